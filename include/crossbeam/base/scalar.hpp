@@ -1,0 +1,122 @@
+#pragma once
+/// @file
+/// What a kernel may ask of its scalar. Every kernel is one template that runs on float, double,
+/// long double, multiprecision numbers, dual numbers (adapters/autodiff.hpp) and SIMD packs
+/// (base/simd.hpp). It therefore never branches on a value: it compares, gets a mask (bool or a
+/// lane mask) and selects.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+/// Kernels must be inlined as a whole: compilers otherwise pass packs through memory.
+#if defined(__GNUC__)
+#define CROSSBEAM_INLINE [[gnu::always_inline]] inline
+#else
+#define CROSSBEAM_INLINE inline
+#endif
+
+namespace crossbeam {
+
+/// Specialised by packs and dual numbers.
+template <class T>
+struct ScalarTraits {
+  using Real = T;                             ///< type of the constants a kernel mixes with T
+  using Passive = T;                          ///< T without derivatives
+  static constexpr int lanes = 1;             ///< values held side by side
+  static constexpr int derivative_order = 0;  ///< highest derivative that T carries
+};
+
+template <class T>
+using real_t = typename ScalarTraits<T>::Real;
+template <class T>
+using passive_t = typename ScalarTraits<T>::Passive;
+template <class T>
+inline constexpr int lanes_v = ScalarTraits<T>::lanes;
+
+/// Value without derivatives; overloaded for dual numbers.
+template <class T>
+  requires(ScalarTraits<T>::derivative_order == 0)
+CROSSBEAM_INLINE constexpr const T& passive(const T& x) {
+  return x;
+}
+
+template <class T>
+CROSSBEAM_INLINE constexpr T select(bool condition, const T& a, const T& b) {
+  return condition ? a : b;
+}
+CROSSBEAM_INLINE constexpr bool any(bool condition) { return condition; }
+CROSSBEAM_INLINE constexpr bool all(bool condition) { return condition; }
+
+template <class T>
+CROSSBEAM_INLINE T maximum(const T& a, const T& b) {
+  return select(a < b, b, a);
+}
+template <class T>
+CROSSBEAM_INLINE T minimum(const T& a, const T& b) {
+  return select(b < a, b, a);
+}
+template <class T>
+CROSSBEAM_INLINE T magnitude(const T& a) {
+  return select(a < T(0), -a, a);
+}
+template <class T>
+CROSSBEAM_INLINE T square(const T& a) {
+  return a * a;
+}
+
+/// Rounding unit of the numbers inside T.
+template <class T>
+constexpr real_t<T> epsilon_of() {
+  return std::numeric_limits<real_t<T>>::epsilon();
+}
+
+/// Largest value over the lanes; the value itself for plain scalars.
+template <class T>
+  requires(ScalarTraits<T>::lanes == 1)
+CROSSBEAM_INLINE T lane_maximum(const T& x) {
+  return x;
+}
+template <class T>
+  requires(ScalarTraits<T>::lanes == 1)
+CROSSBEAM_INLINE T lane_sum(const T& x) {
+  return x;
+}
+
+/// Calls `op` on the numbers inside T one by one: for functions that no vector unit has.
+template <class T, class Op>
+  requires(ScalarTraits<T>::lanes == 1)
+CROSSBEAM_INLINE T per_lane(const T& x, Op op) {
+  return op(x);
+}
+
+/// Aggregate of three components that any scalar can fill: points, directions and forces in the
+/// kernels. (Eigen carries the public matrices; inside a SIMD sweep a plain struct optimises better.)
+template <class T>
+struct Vec3 {
+  T x{}, y{}, z{};
+
+  CROSSBEAM_INLINE friend Vec3 operator+(const Vec3& a, const Vec3& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  CROSSBEAM_INLINE friend Vec3 operator-(const Vec3& a, const Vec3& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  template <class S>
+  CROSSBEAM_INLINE friend Vec3 operator*(const S& s, const Vec3& a) {
+    return {s * a.x, s * a.y, s * a.z};
+  }
+};
+
+template <class T>
+CROSSBEAM_INLINE T dot(const Vec3<T>& a, const Vec3<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <class T>
+CROSSBEAM_INLINE Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+}  // namespace crossbeam

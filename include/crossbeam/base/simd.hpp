@@ -1,0 +1,181 @@
+#pragma once
+/// @file
+/// A pack of N floating-point numbers that computes like one number. It stands on the vector
+/// extensions of g++ and clang; on another compiler NativePack is a pack of one.
+/// Choice and measurement of the back end: docs/theory/sweep.md.
+
+#include "crossbeam/base/scalar.hpp"
+
+#include <cstdint>
+#include <cstring>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace crossbeam {
+
+namespace detail {
+
+template <int Bytes>
+struct MaskInteger;
+template <>
+struct MaskInteger<4> {
+  using type = std::int32_t;
+};
+template <>
+struct MaskInteger<8> {
+  using type = std::int64_t;
+};
+
+// The vector type must be spelled in a trait of its own: inside the class template g++ drops the
+// attribute.
+template <class S, int N>
+struct VectorOf {
+  typedef S type __attribute__((vector_size(N * sizeof(S))));
+};
+
+}  // namespace detail
+
+/// Result of comparing packs, one truth value per lane.
+template <class S, int N>
+struct PackMask {
+  using Integer = typename detail::MaskInteger<sizeof(S)>::type;
+  using Vector = typename detail::VectorOf<Integer, N>::type;
+  Vector v;
+
+  CROSSBEAM_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v & b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v | b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v & b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v | b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator!(PackMask a) { return {~a.v}; }
+  CROSSBEAM_INLINE bool operator[](int lane) const { return v[lane] != 0; }
+
+  CROSSBEAM_INLINE friend bool any(PackMask a) {
+    Integer r = 0;
+    for (int i = 0; i < N; ++i) r |= a.v[i];
+    return r != 0;
+  }
+  CROSSBEAM_INLINE friend bool all(PackMask a) {
+    Integer r = -1;
+    for (int i = 0; i < N; ++i) r &= a.v[i];
+    return r != 0;
+  }
+};
+
+template <class S, int N>
+struct Pack {
+  using Value = S;
+  using Vector = typename detail::VectorOf<S, N>::type;
+  using Mask = PackMask<S, N>;
+  Vector v;
+
+  Pack() = default;
+  CROSSBEAM_INLINE Pack(Vector x) : v(x) {}
+  /// Broadcast.
+  template <class A>
+    requires std::is_arithmetic_v<A>
+  CROSSBEAM_INLINE Pack(A s) : v(Vector{} + static_cast<S>(s)) {}
+
+  CROSSBEAM_INLINE static Pack load(const S* from) {
+    Pack p;
+    std::memcpy(&p.v, from, sizeof(Vector));
+    return p;
+  }
+  CROSSBEAM_INLINE void store(S* to) const { std::memcpy(to, &v, sizeof(Vector)); }
+  CROSSBEAM_INLINE S operator[](int lane) const { return v[lane]; }
+  CROSSBEAM_INLINE void set(int lane, S value) { v[lane] = value; }
+
+  CROSSBEAM_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  CROSSBEAM_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  CROSSBEAM_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+  CROSSBEAM_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  CROSSBEAM_INLINE friend Pack operator-(Pack a) { return -a.v; }
+  CROSSBEAM_INLINE friend Pack operator+(Pack a) { return a; }
+  CROSSBEAM_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
+  CROSSBEAM_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
+  CROSSBEAM_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
+
+  CROSSBEAM_INLINE friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
+  CROSSBEAM_INLINE friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+  CROSSBEAM_INLINE friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
+  CROSSBEAM_INLINE friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+  CROSSBEAM_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
+
+  CROSSBEAM_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
+
+  /// Square root by the vector unit itself, so that no compiler flag is needed. (The masked forms:
+  /// the plain 512-bit ones read an undefined register in g++ 12's headers and warn.)
+  CROSSBEAM_INLINE friend Pack sqrt(Pack a) {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(Vector) == 64 && sizeof(S) == 8)
+      return Vector(_mm512_mask_sqrt_pd(__m512d(a.v), 0xff, __m512d(a.v)));
+    else if constexpr (sizeof(Vector) == 64)
+      return Vector(_mm512_mask_sqrt_ps(__m512(a.v), 0xffff, __m512(a.v)));
+    else
+#endif
+#if defined(__AVX__)
+        if constexpr (sizeof(Vector) == 32 && sizeof(S) == 8)
+      return Vector(_mm256_sqrt_pd(__m256d(a.v)));
+    else if constexpr (sizeof(Vector) == 32)
+      return Vector(_mm256_sqrt_ps(__m256(a.v)));
+    else
+#endif
+#if defined(__SSE2__)
+        if constexpr (sizeof(Vector) == 16 && sizeof(S) == 8)
+      return Vector(_mm_sqrt_pd(__m128d(a.v)));
+    else if constexpr (sizeof(Vector) == 16)
+      return Vector(_mm_sqrt_ps(__m128(a.v)));
+    else
+#endif
+      return per_lane(a, [](S s) { return std::sqrt(s); });
+  }
+
+  template <class Op>
+  CROSSBEAM_INLINE friend Pack per_lane(Pack a, Op op) {
+    Pack r;
+    for (int i = 0; i < N; ++i) r.v[i] = op(a.v[i]);
+    return r;
+  }
+
+  CROSSBEAM_INLINE friend S lane_maximum(Pack a) {
+    S r = a.v[0];
+    for (int i = 1; i < N; ++i) r = a.v[i] > r ? a.v[i] : r;
+    return r;
+  }
+  CROSSBEAM_INLINE friend S lane_sum(Pack a) {
+    S r = a.v[0];
+    for (int i = 1; i < N; ++i) r += a.v[i];
+    return r;
+  }
+};
+
+template <class S, int N>
+struct ScalarTraits<Pack<S, N>> {
+  using Real = S;
+  using Passive = Pack<S, N>;
+  static constexpr int lanes = N;
+  static constexpr int derivative_order = 0;
+};
+
+namespace detail {
+#if defined(__AVX512F__)
+inline constexpr int vector_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int vector_bytes = 32;
+#else
+inline constexpr int vector_bytes = 16;
+#endif
+}  // namespace detail
+
+/// The pack that fills one vector register of the machine compiled for. The only place that
+/// decides the width; a host code may put its own type here by defining the macro.
+#ifdef CROSSBEAM_NATIVE_PACK
+template <class S>
+using NativePack = CROSSBEAM_NATIVE_PACK<S>;
+#else
+template <class S>
+using NativePack = Pack<S, detail::vector_bytes / static_cast<int>(sizeof(S))>;
+#endif
+
+}  // namespace crossbeam

@@ -1,0 +1,61 @@
+#pragma once
+/// @file
+/// Parameters of the plain-weave unit cell (paper, section 4.1 and Table 1) and their admissible
+/// ranges. Any consistent set of units; the comments use kN, mm. Theory: docs/theory/cell.md.
+
+#include "crossbeam/base/error.hpp"
+#include "crossbeam/base/scalar.hpp"
+
+#include <string>
+
+namespace crossbeam {
+
+/// One yarn of the cell: a beam from the inflection of its crimp wave to the crossing.
+template <class R>
+struct YarnParameters {
+  R youngs_modulus = R(35.4);               ///< E [kN/mm^2]; > 0 (Table 1)
+  R cross_section = R(1);                   ///< A [mm^2]; > 0 (Table 1)
+  R second_moment_of_area = R(1) / R(10000);  ///< I [mm^4]; >= 0 (Table 1)
+  R length = R(2.5);  ///< L, in-plane distance from inflection to crossing [mm]; > 0 (Table 1)
+};
+
+/// The cell: warp beam 1, weft beam 2, contact beam 3. Defaults are Table 1 of the paper, with the
+/// 17.6 mm^2 of its row "A_warp" read as the contact area (docs/theory/cell.md, [C-1]).
+template <class R = double>
+struct CellParameters {
+  YarnParameters<R> warp{};
+  YarnParameters<R> weft{};
+  R contact_modulus = R(1);               ///< E3 [kN/mm^2]; > 0
+  R contact_area = R(176) / R(10);        ///< A3 [mm^2]; > 0
+  R contact_length = R(8) / R(10);        ///< L3, distance of the yarns' centre lines [mm]; > 0
+  R warp_height_fraction = R(1) / R(2);   ///< chi = H1 / L3 [-]; in (0, 1)
+  R bending_boundary_factor = R(3);       ///< kbc: 3 hinged at the inflection, 12 clamped [-]; > 0
+  R residual_compression_stiffness = R(0);  ///< kres, extra axial stiffness of a shortened yarn
+                                            ///< [kN/mm]; >= 0, tag [C-8]
+  int symmetry = 1;  ///< nsym: 1 as printed in Eq. 15; 2 for the full period, with A3/2; tag [C-9]
+};
+
+/// Throws InputError naming the field, its value, unit and admissible range.
+/// @param prefix the caller's name of the parameter set, for instance "cell".
+template <class R>
+void validate(const CellParameters<R>& p, const std::string& prefix = "cell") {
+  const auto yarn = [](const YarnParameters<R>& y, const std::string& name) {
+    require_positive(name + ".youngs_modulus", y.youngs_modulus, "kN/mm^2");
+    require_positive(name + ".cross_section", y.cross_section, "mm^2");
+    require_non_negative(name + ".second_moment_of_area", y.second_moment_of_area, "mm^4");
+    require_positive(name + ".length", y.length, "mm");
+  };
+  yarn(p.warp, prefix + ".warp");
+  yarn(p.weft, prefix + ".weft");
+  require_positive(prefix + ".contact_modulus", p.contact_modulus, "kN/mm^2");
+  require_positive(prefix + ".contact_area", p.contact_area, "mm^2");
+  require_positive(prefix + ".contact_length", p.contact_length, "mm");
+  require_between(prefix + ".warp_height_fraction", p.warp_height_fraction, "-", 0, 1);
+  require_positive(prefix + ".bending_boundary_factor", p.bending_boundary_factor, "-");
+  require_non_negative(prefix + ".residual_compression_stiffness",
+                       p.residual_compression_stiffness, "kN/mm");
+  if (p.symmetry != 1 && p.symmetry != 2)
+    throw InputError(prefix + ".symmetry", std::to_string(p.symmetry), "", "1 or 2");
+}
+
+}  // namespace crossbeam
