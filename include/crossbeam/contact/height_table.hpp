@@ -1,0 +1,210 @@
+#pragma once
+/// @file
+/// A height field as a biquadratic B-spline on a uniform grid: the form in which a drape asks for
+/// its tools, once per node and step. Theory: docs/theory/tools.md.
+
+#include "crossbeam/contact/surface.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace crossbeam {
+
+/// Where and how finely a height function is tabulated.
+template <class R = double>
+struct HeightTableGrid {
+  R x0 = R(0), x1 = R(0);  ///< range along x [mm]; x0 < x1
+  R y0 = R(0), y1 = R(0);  ///< range along y [mm]; y0 < y1
+  R spacing = R(1) / R(2);  ///< cell size aimed at; rounded down to fill the range evenly [mm]; > 0
+  bool mirror_x = false;    ///< x = x0 is a symmetry plane: x < x0 is answered from the mirror image
+  bool mirror_y = false;    ///< likewise y = y0
+};
+
+/// Interpolates the samples at the cell centres by a C1 spline whose gradient is the exact
+/// derivative of its value [T-12]. The normal slope is zero on all four sides, so that the constant
+/// continuation outside (or the mirror image) is C1 too: the range has to end on symmetry planes
+/// or on the flat flange. Copying copies the table.
+template <class R = double>
+class HeightTable {
+ public:
+  /// @param source any callable z(x, y), or any class with height(x, y).h
+  template <class Source>
+  HeightTable(const Source& source, const HeightTableGrid<R>& grid)
+      : x_(axis("x", grid.x0, grid.x1, grid.spacing, grid.mirror_x)),
+        y_(axis("y", grid.y0, grid.y1, grid.spacing, grid.mirror_y)),
+        stride_(static_cast<std::size_t>(x_.cells) + 2),
+        coefficients_(stride_ * (static_cast<std::size_t>(y_.cells) + 2)) {
+    for (int j = 0; j < y_.cells; ++j)
+      for (int i = 0; i < x_.cells; ++i)
+        at(i + 1, j + 1) = require_finite("table.source(x, y)",
+                                          sampled(source, x_.centre(i), y_.centre(j)), "mm");
+    std::vector<R> work(static_cast<std::size_t>(maximum(x_.cells, y_.cells)));
+    for (int j = 1; j <= y_.cells; ++j) solve(&at(0, j), 1, x_.cells, work);
+    for (int i = 0; i < x_.cells + 2; ++i) solve(&at(i, 0), stride_, y_.cells, work);
+    max_slope_ = slope_bound();
+  }
+
+  /// Height and gradient. T is R, a Pack of R or a number with derivatives over R.
+  template <class T>
+    requires std::same_as<real_t<T>, R>
+  CROSSBEAM_INLINE HeightSample<T> height(const T& x, const T& y) const {
+    const Place<T> a = locate(x_, x), b = locate(y_, y);
+    T h = T(R(0)), h_x = T(R(0)), h_y = T(R(0));
+    for (int j = 0; j < 3; ++j) {
+      const T c0 = gather<T>(a.cell, b.cell, 0, j), c1 = gather<T>(a.cell, b.cell, 1, j),
+              c2 = gather<T>(a.cell, b.cell, 2, j);
+      const T row = a.weight[0] * c0 + a.weight[1] * c1 + a.weight[2] * c2;
+      h = h + b.weight[j] * row;
+      h_x = h_x + b.weight[j] * (a.rate[0] * c0 + a.rate[1] * c1 + a.rate[2] * c2);
+      h_y = h_y + b.rate[j] * row;
+    }
+    return {h, h_x, h_y};
+  }
+
+  /// Upper bound of the gradient's length over the whole table.
+  [[nodiscard]] R max_slope() const { return max_slope_; }
+  [[nodiscard]] R spacing_x() const { return x_.spacing; }
+  [[nodiscard]] R spacing_y() const { return y_.spacing; }
+  [[nodiscard]] std::size_t bytes() const { return coefficients_.size() * sizeof(R); }
+
+ private:
+  struct Axis {
+    R origin, spacing, per_spacing;
+    int cells;
+    bool mirror;
+    [[nodiscard]] R centre(int i) const { return origin + (R(i) + R(1) / R(2)) * spacing; }
+  };
+
+  /// Cell of a coordinate and the three spline weights there, with their derivatives [1/length].
+  template <class T>
+  struct Place {
+    int cell[lanes_v<T>];
+    T weight[3], rate[3];
+  };
+
+  static Axis axis(const std::string& name, R low, R high, R spacing, bool mirror) {
+    require_finite("table." + name + "0", low, "mm");
+    require_finite("table." + name + "1", high, "mm");
+    require_positive("table.spacing", spacing, "mm");
+    if (!(low < high))
+      throw InputError("table." + name + "1", detail::to_text(high), "mm",
+                       "above " + name + "0 = " + detail::to_text(low));
+    // More than this is a typing error in the spacing: a thousand cells resolve 0.2 mm on the tool.
+    constexpr int most = 20000;
+    const R wanted = (high - low) / spacing;
+    if (!(wanted <= R(most)))
+      throw InputError("table.spacing", detail::to_text(spacing), "mm",
+                       "at least 1/" + std::to_string(most) + " of the range along " + name);
+    // The slack keeps 90 / 0.1 at 900 cells although the quotient may round up.
+    using std::ceil;
+    const int cells = static_cast<int>(ceil(wanted * (R(1) - R(8) * epsilon_of<R>())));
+    const R exact = (high - low) / R(cells);
+    return {low, exact, R(1) / exact, cells, mirror};
+  }
+
+  template <class Source>
+  static R sampled(const Source& source, R x, R y) {
+    if constexpr (requires { source.height(x, y).h; })
+      return static_cast<R>(source.height(x, y).h);
+    else
+      return static_cast<R>(source(x, y));
+  }
+
+  R& at(int i, int j) {
+    return coefficients_[static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(i)];
+  }
+
+  /// One line of coefficients in place: (c[k-1] + 6 c[k] + c[k+1]) / 8 = sample k, k = 1..n, with
+  /// c[0] = c[1] and c[n+1] = c[n] [T-13]. Diagonally dominant: elimination without pivoting.
+  static void solve(R* line, std::size_t step, int n, std::vector<R>& upper) {
+    const auto c = [&](int k) -> R& { return line[static_cast<std::size_t>(k) * step]; };
+    const auto u = [&](int k) -> R& { return upper[static_cast<std::size_t>(k - 1)]; };
+    for (int k = 1; k <= n; ++k) {
+      const R diagonal = R(6) + R(k == 1 ? 1 : 0) + R(k == n ? 1 : 0);
+      const R pivot = k == 1 ? diagonal : diagonal - u(k - 1);
+      u(k) = R(1) / pivot;
+      c(k) = (R(8) * c(k) - (k == 1 ? R(0) : c(k - 1))) / pivot;
+    }
+    for (int k = n - 1; k >= 1; --k) c(k) = c(k) - u(k) * c(k + 1);
+    c(0) = c(1);
+    c(n + 1) = c(n);
+  }
+
+  /// The gradient is an average of neighbouring coefficients' difference quotients: their largest
+  /// over the cell bounds it [T-14].
+  [[nodiscard]] R slope_bound() {
+    using std::sqrt;
+    R bound = R(0);
+    for (int j = 0; j < y_.cells; ++j)
+      for (int i = 0; i < x_.cells; ++i) {
+        R along_x = R(0), along_y = R(0);
+        for (int m = 0; m < 3; ++m)
+          for (int k = 0; k < 2; ++k) {
+            along_x = maximum(along_x, magnitude(at(i + k + 1, j + m) - at(i + k, j + m)));
+            along_y = maximum(along_y, magnitude(at(i + m, j + k + 1) - at(i + m, j + k)));
+          }
+        bound = maximum(bound, square(along_x * x_.per_spacing) + square(along_y * y_.per_spacing));
+      }
+    return sqrt(bound);
+  }
+
+  template <class T>
+  CROSSBEAM_INLINE static Place<T> locate(const Axis& axis, const T& x) {
+    const T zero = T(R(0)), one = T(R(1)), half = T(R(1) / R(2));
+    T t = (x - T(axis.origin)) * T(axis.per_spacing);
+    T sign = one;
+    if (axis.mirror) {
+      sign = select(t < zero, -one, one);
+      t = t * sign;
+    }
+    // The first and last coefficient repeat their neighbour, so the clamped end has zero slope.
+    t = select(t < zero, zero, t);
+    t = select(t > T(R(axis.cells)), T(R(axis.cells)), t);
+    Place<T> p;
+    // A NaN coordinate looks up cell 0 and comes back as NaN through the weights.
+    const auto inside = passive(select(t >= zero, t, zero));
+    T base = zero;
+    if constexpr (lanes_v<T> == 1) {
+      const int cell = static_cast<int>(inside);
+      p.cell[0] = cell < axis.cells ? cell : axis.cells - 1;
+      base = T(R(p.cell[0]));
+    } else {
+      for (int lane = 0; lane < lanes_v<T>; ++lane) {
+        const int cell = static_cast<int>(inside[lane]);
+        p.cell[lane] = cell < axis.cells ? cell : axis.cells - 1;
+        base.set(lane, R(p.cell[lane]));
+      }
+    }
+    const T v = t - base, rest = one - v;
+    const T scale = sign * T(axis.per_spacing);
+    p.weight[0] = half * rest * rest;
+    p.weight[1] = half + v * rest;
+    p.weight[2] = half * v * v;
+    p.rate[0] = -scale * rest;
+    p.rate[1] = scale * (rest - v);
+    p.rate[2] = scale * v;
+    return p;
+  }
+
+  template <class T>
+  CROSSBEAM_INLINE T gather(const int* cell_x, const int* cell_y, int i, int j) const {
+    const auto coefficient = [&](int lane) {
+      return coefficients_[static_cast<std::size_t>(cell_y[lane] + j) * stride_ +
+                           static_cast<std::size_t>(cell_x[lane] + i)];
+    };
+    if constexpr (lanes_v<T> == 1) {
+      return T(coefficient(0));
+    } else {
+      T r{};
+      for (int lane = 0; lane < lanes_v<T>; ++lane) r.set(lane, coefficient(lane));
+      return r;
+    }
+  }
+
+  Axis x_, y_;
+  std::size_t stride_;
+  std::vector<R> coefficients_;
+  R max_slope_ = R(0);
+};
+
+}  // namespace crossbeam

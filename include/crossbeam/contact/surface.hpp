@@ -1,0 +1,73 @@
+#pragma once
+/// @file
+/// What the contact asks of a rigid tool: at a point, how far is the surface and which way does it
+/// push. A tool is any class with `gap(Vec3<T>)`; there is no base class. All points are given in
+/// the tool's own frame: whoever moves the tool subtracts its translation first.
+/// Theory: docs/theory/tools.md.
+
+#include "crossbeam/base/error.hpp"
+#include "crossbeam/base/scalar.hpp"
+
+#include <concepts>
+#include <string>
+
+namespace crossbeam {
+
+/// Answer of a rigid surface at one point [T-1].
+template <class T>
+struct SurfaceGap {
+  T gap;           ///< signed distance, > 0 on the fabric's side [length]
+  Vec3<T> normal;  ///< unit normal pointing to the fabric's side [-]
+  T clearance;     ///< never above the Euclidean distance to the surface [length]; what a culling
+                   ///< may rely on. Negative or zero: nothing is promised.
+};
+
+/// A rigid tool that can be asked with the scalar T.
+template <class S, class T>
+concept Surface = requires(const S& surface, const Vec3<T>& point) {
+  { surface.gap(point) } -> std::same_as<SurfaceGap<T>>;
+};
+
+/// A height z = h(x, y) with its gradient.
+template <class T>
+struct HeightSample {
+  T h;         ///< [length]
+  T h_x, h_y;  ///< dh/dx, dh/dy [-]
+};
+
+/// A height function that can be asked with the scalar T.
+template <class H, class T>
+concept Height = requires(const H& function, const T& x) {
+  { function.height(x, x) } -> std::same_as<HeightSample<T>>;
+  { function.max_slope() } -> std::convertible_to<real_t<T>>;
+};
+
+/// Where the fabric lies as seen from a height field.
+enum class Side {
+  above,  ///< z > h: punch, blank holder
+  below   ///< z < h: die
+};
+
+namespace detail {
+
+template <class R>
+Vec3<R> require_finite_point(const std::string& field, const Vec3<R>& p, const std::string& unit) {
+  require_finite(field + ".x", p.x, unit);
+  require_finite(field + ".y", p.y, unit);
+  require_finite(field + ".z", p.z, unit);
+  return p;
+}
+
+/// Returns v / |v|. The largest component is divided out first: no length over- or underflows.
+template <class R>
+Vec3<R> require_direction(const std::string& field, const Vec3<R>& v) {
+  using std::sqrt;
+  require_finite_point(field, v, "-");
+  const R largest = maximum(magnitude(v.x), maximum(magnitude(v.y), magnitude(v.z)));
+  if (!(largest > R(0))) throw InputError(field, "(0, 0, 0)", "-", "a vector of length > 0");
+  const Vec3<R> scaled{v.x / largest, v.y / largest, v.z / largest};
+  return (R(1) / sqrt(dot(scaled, scaled))) * scaled;
+}
+
+}  // namespace detail
+}  // namespace crossbeam
