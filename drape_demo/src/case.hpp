@@ -5,6 +5,7 @@
 /// Units: kN, mm, ms, kg (so velocities are in m/s and energies in J = kN mm).
 
 #include "crossbeam/cell/parameters.hpp"
+#include "crossbeam/law/shear.hpp"
 
 #include <cstdint>
 #include <string>
@@ -14,7 +15,6 @@ namespace crossbeam::drape {
 
 enum class CellFormulation { energy, second_order };  ///< E-U, or Eq. 24-25 as printed
 enum class ShearLawKind { constant, polynomial, tabulated };
-enum class ShearMeasure { tensor, engineering };
 enum class FrictionModel { elastic_stick, viscous };
 enum class Precision { double_, float_ };
 

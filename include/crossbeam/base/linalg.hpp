@@ -1,0 +1,40 @@
+#pragma once
+/// @file
+/// Fixed-size Eigen names of the public interface and the Voigt map of the membrane.
+///
+/// Voigt order is (11, 22, 12). A strain carries 2 E12 in the third place, a stress S12, so that
+/// their product is the work.
+
+#include "crossbeam/base/scalar.hpp"
+
+#include <Eigen/Core>
+
+namespace crossbeam {
+
+template <class T>
+using Vector2 = Eigen::Matrix<T, 2, 1>;
+template <class T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Matrix2 = Eigen::Matrix<T, 2, 2>;
+template <class T>
+using Matrix3 = Eigen::Matrix<T, 3, 3>;
+/// Two spatial vectors side by side: columns are base vectors.
+template <class T>
+using Base = Eigen::Matrix<T, 3, 2>;
+
+/// (E11, E22, 2 E12) of a symmetric strain tensor.
+template <class T>
+Vector3<T> strain_to_voigt(const Matrix2<T>& E) {
+  return {E(0, 0), E(1, 1), E(0, 1) + E(1, 0)};
+}
+
+/// Symmetric stress tensor of (S11, S22, S12).
+template <class T>
+Matrix2<T> stress_from_voigt(const Vector3<T>& s) {
+  Matrix2<T> S;
+  S << s(0), s(2), s(2), s(1);
+  return S;
+}
+
+}  // namespace crossbeam

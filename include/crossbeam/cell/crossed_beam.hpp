@@ -1,0 +1,349 @@
+#pragma once
+/// @file
+/// The energy-consistent crossed-beam cell: two crimped yarns, exact kinematics, joined by a contact
+/// beam that presses but does not pull (unilateral, the default) or does both (bilateral, the paper's
+/// literal beam 3, with a status because it has no unique solution in compression).
+/// Theory, theorems and their proofs: docs/theory/cell.md. Sources: paper section 4.1; the energy is
+/// our completion of it.
+///
+/// Units (any consistent set): force kN, length mm, energy kN mm, stiffness kN/mm.
+/// Sign: w1, w2 are the increments of the yarns' crimp heights; the paper's u3 = w1, u4 = -w2.
+
+#include "crossbeam/base/scalar.hpp"
+#include "crossbeam/cell/parameters.hpp"
+
+#include <cmath>
+#include <concepts>
+
+namespace crossbeam {
+
+enum class CellStatus {
+  converged,
+  not_converged,       ///< the iteration did not reach its tolerance
+  unstable,            ///< no stable equilibrium on the branch followed (bilateral, second order)
+  outside_kinematics,  ///< a yarn is shortened to nothing, or the input is not a number
+};
+
+/// What a cell answers to the elongations (u1, u2) of its yarns.
+template <class T>
+struct CellForces {
+  T F1{}, F2{};  ///< forces on the master nodes N1 (warp), N2 (weft); F_i = dU/du_i
+  T w1{}, w2{};  ///< crimp height increments
+  T q{};         ///< contact force, compression positive
+};
+
+/// Condensed tangent dF_i/du_j; symmetric for the energy cells.
+template <class T>
+struct CellTangent {
+  T K11{}, K12{}, K22{};
+};
+
+/// How far the equilibrium is iterated.
+struct SolverControl {
+  int sweeps = 0;  ///< > 0: exactly that many Newton sweeps, no test. 0: until converged.
+  static constexpr SolverControl converged() { return {0}; }
+  static constexpr SolverControl fixed(int n) { return {n}; }
+};
+
+/// One yarn's constants, derived once. R is a plain real type.
+template <class R>
+struct YarnConstants {
+  R ka, kb;      ///< axial EA/l0 and bending kbc EI/l0^3 stiffness [kN/mm], tag [C-2]
+  R L, H, l0;    ///< projected length, crimp height, chord length in the unstressed cell [mm]
+  R c0, s0;      ///< cosine and sine of the crimp angle
+
+  YarnConstants() = default;
+  YarnConstants(const YarnParameters<R>& yarn, R height, R boundary_factor) {
+    using std::sqrt;
+    L = yarn.length;
+    H = height;
+    l0 = sqrt(L * L + H * H);
+    c0 = L / l0;
+    s0 = H / l0;
+    ka = yarn.youngs_modulus * yarn.cross_section / l0;
+    kb = boundary_factor * yarn.youngs_modulus * yarn.second_moment_of_area / (l0 * l0 * l0);
+  }
+};
+
+/// One yarn at elongation u and height increment w, tag [C-3]. All derivatives of its energy.
+template <class T>
+struct YarnState {
+  T e, t;      ///< chord elongation, transverse displacement
+  T c, s;      ///< current cosine and sine
+  T N;         ///< axial force
+  T N_over_l;  ///< string stiffness
+
+  template <class R>
+  CROSSBEAM_INLINE YarnState(const YarnConstants<R>& y, const T& u, const T& w) {
+    using std::sqrt;
+    const T Lc = T(y.L) + u, h = T(y.H) + w;
+    const T l = sqrt(Lc * Lc + h * h);
+    const T inv_l = T(1) / l;
+    e = (u * (T(y.L) + Lc) + w * (T(y.H) + h)) / (l + T(y.l0));
+    t = T(y.c0) * w - T(y.s0) * u;
+    c = Lc * inv_l;
+    s = h * inv_l;
+    N = T(y.ka) * e;
+    N_over_l = N * inv_l;
+  }
+
+  template <class R>
+  CROSSBEAM_INLINE T energy(const YarnConstants<R>& y) const {
+    return T(0.5) * (T(y.ka) * e * e + T(y.kb) * t * t);
+  }
+  template <class R>
+  CROSSBEAM_INLINE T horizontal_force(const YarnConstants<R>& y) const {
+    return N * c - T(y.kb * y.s0) * t;
+  }
+  template <class R>
+  CROSSBEAM_INLINE T vertical_force(const YarnConstants<R>& y) const {
+    return N * s + T(y.kb * y.c0) * t;
+  }
+  template <class R>
+  CROSSBEAM_INLINE T k_hh(const YarnConstants<R>& y) const {
+    return T(y.ka) * s * s + N_over_l * c * c + T(y.kb * y.c0 * y.c0);
+  }
+  template <class R>
+  CROSSBEAM_INLINE T k_LL(const YarnConstants<R>& y) const {
+    return T(y.ka) * c * c + N_over_l * s * s + T(y.kb * y.s0 * y.s0);
+  }
+  template <class R>
+  CROSSBEAM_INLINE T k_Lh(const YarnConstants<R>& y) const {
+    return (T(y.ka) - N_over_l) * c * s - T(y.kb * y.s0 * y.c0);
+  }
+};
+
+/// A cell: answers (u1, u2) with forces, on request with its energy and tangent.
+template <class C, class T>
+concept UnitCell = requires(const C& cell, T u) {
+  typename C::Real;
+  { cell.solve(u, u).forces } -> std::convertible_to<CellForces<T>>;
+  { cell.membrane_stiffness_bound() } -> std::convertible_to<typename C::Real>;
+};
+
+enum class Contact { unilateral, bilateral };
+
+/// The energy cell. Stateless: an answer depends on (u1, u2) alone.
+template <class R, Contact ContactKind = Contact::unilateral>
+class CrossedBeamCell {
+ public:
+  using Real = R;
+
+  /// @throws InputError (validate).
+  explicit CrossedBeamCell(const CellParameters<R>& parameters) : parameters_(parameters) {
+    validate(parameters);
+    const R H1 = parameters.warp_height_fraction * parameters.contact_length;
+    yarn1_ = {parameters.warp, H1, parameters.bending_boundary_factor};
+    yarn2_ = {parameters.weft, parameters.contact_length - H1, parameters.bending_boundary_factor};
+    k3_ = parameters.contact_modulus * parameters.contact_area / parameters.contact_length;
+    has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
+  }
+
+  [[nodiscard]] const CellParameters<R>& parameters() const { return parameters_; }
+  [[nodiscard]] const YarnConstants<R>& warp() const { return yarn1_; }
+  [[nodiscard]] const YarnConstants<R>& weft() const { return yarn2_; }
+  [[nodiscard]] R contact_stiffness() const { return k3_; }
+
+  /// Cell in equilibrium; its energy and tangent are computed only when asked for.
+  template <class T>
+  struct Solution {
+    CellForces<T> forces{};
+    CellStatus status = CellStatus::converged;
+    int sweeps = 0;          ///< Newton sweeps spent
+    T last_correction{};     ///< max |dw| of the last sweep: the error is of its square [mm]
+    T contact_stiffness{};   ///< B of [C-6]: k3 where the contact is closed, else 0
+  };
+
+  /// Equilibrium for elongations u_i > -L_i.
+  /// Converged mode returns status not_converged / outside_kinematics instead of garbage; with a
+  /// fixed number of sweeps the caller owns that check (docs/theory/cell.md, error table).
+  /// With dual numbers the iteration runs on plain values and the derivatives come from final
+  /// sweeps in the dual numbers, tag [C-7].
+  template <class T>
+  CROSSBEAM_INLINE Solution<T> solve(const T& u1, const T& u2,
+                                     SolverControl control = SolverControl::converged()) const {
+    if constexpr (ScalarTraits<T>::derivative_order > 0) {
+      const auto plain = solve(passive(u1), passive(u2), control);
+      T w1(plain.forces.w1), w2(plain.forces.w2);
+      Solution<T> solution;
+      for (int k = 0; k < ScalarTraits<T>::derivative_order; ++k)
+        sweep(u1, u2, w1, w2, solution.forces.q, solution.contact_stiffness);
+      finish(u1, u2, w1, w2, solution);
+      solution.status = plain.status;
+      solution.sweeps = plain.sweeps;
+      return solution;
+    } else {
+      Solution<T> solution;
+      T w1, w2;
+      if constexpr (ContactKind == Contact::unilateral) {
+        if (start(u1, u2, w1, w2)) {  // every lane slack and no bending: nothing to iterate
+          finish(u1, u2, w1, w2, solution);
+          if (control.sweeps == 0) check(u1, u2, solution);
+          return solution;
+        }
+      } else {
+        w1 = T(0);
+        w2 = T(0);
+      }
+      if (control.sweeps > 0) {
+        for (int k = 0; k < control.sweeps; ++k)
+          solution.last_correction =
+              sweep(u1, u2, w1, w2, solution.forces.q, solution.contact_stiffness);
+        solution.sweeps = control.sweeps;
+      } else {
+        iterate(u1, u2, w1, w2, solution);
+      }
+      finish(u1, u2, w1, w2, solution);
+      if (control.sweeps == 0) check(u1, u2, solution);
+      return solution;
+    }
+  }
+
+  /// Stored energy of the cell at a solution, tag [C-3].
+  template <class T>
+  CROSSBEAM_INLINE T energy(const T& u1, const T& u2, const Solution<T>& at) const {
+    const YarnState<T> y1(yarn1_, u1, at.forces.w1), y2(yarn2_, u2, at.forces.w2);
+    const T q = at.forces.q;
+    return y1.energy(yarn1_) + y2.energy(yarn2_) + q * q / T(R(2) * k3_) + residual_energy(u1) +
+           residual_energy(u2);
+  }
+
+  /// Condensed tangent at a solution, tag [C-6]. A contact that just touches counts as closed.
+  template <class T>
+  CROSSBEAM_INLINE CellTangent<T> tangent(const T& u1, const T& u2, const Solution<T>& at) const {
+    const YarnState<T> y1(yarn1_, u1, at.forces.w1), y2(yarn2_, u2, at.forces.w2);
+    const T h1 = y1.k_hh(yarn1_), h2 = y2.k_hh(yarn2_);
+    const T m1 = y1.k_Lh(yarn1_), m2 = y2.k_Lh(yarn2_);
+    const T B = at.contact_stiffness;
+    // A straight yarn without bending has k_hh = 0 and k_Lh = 0 while the contact is open.
+    const T det = maximum(h1 * h2 + B * (h1 + h2), T(std::numeric_limits<R>::min()));
+    const T inv = T(1) / det;
+    const T zero(0);
+    return {y1.k_LL(yarn1_) - m1 * m1 * (h2 + B) * inv + select(u1 < zero, T(kres()), zero),
+            m1 * m2 * B * inv,
+            y2.k_LL(yarn2_) - m2 * m2 * (h1 + B) * inv + select(u2 < zero, T(kres()), zero)};
+  }
+
+  /// Upper bound of the eigenvalues of dP/dlambda, the membrane tangent per unit width [kN/mm],
+  /// at taut yarns of moderate tension, tag [C-10]. Constant: no step has to look at the state.
+  /// @param sine sine of the reference angle between the yarns
+  [[nodiscard]] R membrane_stiffness_bound(R sine = R(1)) const {
+    const R A0 = R(parameters_.symmetry) * yarn1_.L * yarn2_.L * sine;
+    const R warp = (yarn1_.ka + kres()) * yarn1_.L * yarn1_.L / A0;
+    const R weft = (yarn2_.ka + kres()) * yarn2_.L * yarn2_.L / A0;
+    return warp < weft ? weft : warp;
+  }
+
+ private:
+  [[nodiscard]] CROSSBEAM_INLINE R kres() const {
+    return parameters_.residual_compression_stiffness;
+  }
+
+  template <class T>
+  CROSSBEAM_INLINE T residual_energy(const T& u) const {
+    const T shortening = minimum(u, T(0));
+    return T(R(0.5) * kres()) * shortening * shortening;
+  }
+
+  /// Closed-form start on the convex branch, tag [C-5]. Returns true when nothing has to be iterated.
+  template <class T>
+  CROSSBEAM_INLINE bool start(const T& u1, const T& u2, T& w1, T& w2) const {
+    using std::sqrt;
+    const T a1 = T(yarn1_.H * yarn1_.H) - u1 * (T(R(2) * yarn1_.L) + u1);
+    const T a2 = T(yarn2_.H * yarn2_.H) - u2 * (T(R(2) * yarn2_.L) + u2);
+    const T hs1 = sqrt(maximum(a1, T(0))), hs2 = sqrt(maximum(a2, T(0)));
+    const T gap = maximum(T(yarn1_.H + yarn2_.H) - hs1 - hs2, T(0));
+    const T x1 = hs1 + T(0.5) * gap, x2 = hs2 + T(0.5) * gap;
+    const T k1 = maximum(T(yarn1_.ka / (yarn1_.l0 * yarn1_.l0)) * (T(1.5) * x1 * x1 - T(0.5) * a1),
+                         T(R(1e-6) * yarn1_.ka));
+    const T k2 = maximum(T(yarn2_.ka / (yarn2_.l0 * yarn2_.l0)) * (T(1.5) * x2 * x2 - T(0.5) * a2),
+                         T(R(1e-6) * yarn2_.ka));
+    const T f = k2 / (k1 + k2);
+    w1 = hs1 + f * gap - T(yarn1_.H);
+    w2 = hs2 + (T(1) - f) * gap - T(yarn2_.H);
+    return !has_bending_ && all(gap <= T(0)) && all(a1 > T(0)) && all(a2 > T(0));
+  }
+
+  /// One Newton sweep on {g1 = q, g2 = q, w1 + w2 + q/k3 = 0} with q >= 0 for the unilateral
+  /// contact, tag [C-4]. Returns max |dw|.
+  template <class T>
+  CROSSBEAM_INLINE T sweep(const T& u1, const T& u2, T& w1, T& w2, T& q, T& B) const {
+    const YarnState<T> y1(yarn1_, u1, w1), y2(yarn2_, u2, w2);
+    const T g1 = y1.vertical_force(yarn1_), g2 = y2.vertical_force(yarn2_);
+    T D1 = y1.k_hh(yarn1_), D2 = y2.k_hh(yarn2_);
+    if constexpr (ContactKind == Contact::unilateral) {
+      D1 = maximum(D1, T(R(1e-14) * yarn1_.ka));
+      D2 = maximum(D2, T(R(1e-14) * yarn2_.ka));
+    }
+    const T D12 = D1 * D2, k3 = T(k3_);
+    q = k3 * ((g1 - w1 * D1) * D2 + (g2 - w2 * D2) * D1) / (D12 + k3 * (D1 + D2));
+    B = k3;
+    if constexpr (ContactKind == Contact::unilateral) {
+      B = select(q < T(0), T(0), k3);
+      q = maximum(q, T(0));
+    }
+    const T r = T(1) / D12;
+    const T dw1 = (q - g1) * (D2 * r);
+    const T dw2 = (q - g2) * (D1 * r);
+    w1 = w1 + dw1;
+    w2 = w2 + dw2;
+    return maximum(magnitude(dw1), magnitude(dw2));
+  }
+
+  template <class T>
+  void iterate(const T& u1, const T& u2, T& w1, T& w2, Solution<T>& solution) const {
+    using std::sqrt;
+    const R eps = std::numeric_limits<R>::epsilon();
+    // The last correction is squared by the quadratic convergence: eps^(3/4) leaves eps^(3/2).
+    const R tolerance = parameters_.contact_length * sqrt(eps) * sqrt(sqrt(eps));
+    constexpr int limit = 50;
+    for (int k = 1; k <= limit; ++k) {
+      solution.last_correction =
+          sweep(u1, u2, w1, w2, solution.forces.q, solution.contact_stiffness);
+      solution.sweeps = k;
+      if (all(solution.last_correction <= T(tolerance))) return;
+    }
+    solution.status = CellStatus::not_converged;
+  }
+
+  template <class T>
+  CROSSBEAM_INLINE void finish(const T& u1, const T& u2, const T& w1, const T& w2,
+                               Solution<T>& solution) const {
+    const YarnState<T> y1(yarn1_, u1, w1), y2(yarn2_, u2, w2);
+    CellForces<T>& out = solution.forces;
+    out.F1 = y1.horizontal_force(yarn1_);
+    out.F2 = y2.horizontal_force(yarn2_);
+    if (kres() > R(0)) {
+      out.F1 = out.F1 + T(kres()) * minimum(u1, T(0));
+      out.F2 = out.F2 + T(kres()) * minimum(u2, T(0));
+    }
+    out.w1 = w1;
+    out.w2 = w2;
+  }
+
+  /// Status of a solution that was iterated to convergence.
+  template <class T>
+  void check(const T& u1, const T& u2, Solution<T>& solution) const {
+    if (!(all(u1 > T(-yarn1_.L)) && all(u2 > T(-yarn2_.L)))) {
+      solution.status = CellStatus::outside_kinematics;
+    } else if (ContactKind == Contact::bilateral && solution.status == CellStatus::converged) {
+      const T D1 = YarnState<T>(yarn1_, u1, solution.forces.w1).k_hh(yarn1_);
+      const T D2 = YarnState<T>(yarn2_, u2, solution.forces.w2).k_hh(yarn2_);
+      const T k3 = T(k3_);
+      if (!(all(D1 + k3 > T(0)) && all(D1 * D2 + k3 * (D1 + D2) > T(0))))
+        solution.status = CellStatus::unstable;
+    }
+  }
+
+  CellParameters<R> parameters_{};
+  YarnConstants<R> yarn1_{}, yarn2_{};
+  R k3_{};
+  bool has_bending_ = false;
+};
+
+/// The bilateral energy cell (E-B): the paper's literal beam 3, which also pulls. Several solutions
+/// exist in compression; look at the status and fall back on the unilateral cell.
+template <class R>
+using BilateralCell = CrossedBeamCell<R, Contact::bilateral>;
+
+}  // namespace crossbeam

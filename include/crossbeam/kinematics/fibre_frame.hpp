@@ -1,0 +1,152 @@
+#pragma once
+/// @file
+/// The fibre frame F1 (warp), F2 (weft): strains, stretches, yarn elongations and the signed shear
+/// angle (paper, Eq. 8-14). Theory: docs/theory/kinematics.md.
+
+#include "crossbeam/base/error.hpp"
+#include "crossbeam/base/linalg.hpp"
+#include "crossbeam/base/scalar.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace crossbeam {
+
+namespace detail {
+
+/// pi/2 in the precision of R.
+template <class R>
+R half_pi() {
+  if constexpr (std::is_floating_point_v<R>) {
+    return std::numbers::pi_v<R> / 2;
+  } else {
+    using std::atan;
+    return 2 * atan(R(1));
+  }
+}
+
+/// arcsin from square roots and polynomials only, so that packs need no library call: the
+/// polynomial [K-4] for |x| <= 1/2, the half-angle formula above. Arguments beyond +-1 are clamped.
+template <class T>
+CROSSBEAM_INLINE T pack_asin(const T& x) {
+  using R = real_t<T>;
+  constexpr double coefficients[] = {
+      0.028757851367421566, -0.014851887071247204, 0.01740087944269402,  0.005457506718640358,
+      0.01032281435018578,  0.011479177415184906,  0.013971212973552933, 0.017352392720869973,
+      0.02237217294214989,  0.030381944138531247,  0.04464285714635543,  0.07499999999998433,
+      0.16666666666666669};
+  const T a = minimum(magnitude(x), T(1));
+  const auto large = a > T(0.5);
+  const T z = select(large, (T(1) - a) * T(0.5), a * a);
+  const T s = select(large, sqrt(z), a);
+  T p = T(R(coefficients[0]));
+  for (int k = 1; k < 13; ++k) p = p * z + T(R(coefficients[k]));
+  const T small_angle = s + s * z * p;
+  const T angle = select(large, T(half_pi<R>()) - T(2) * small_angle, small_angle);
+  return select(x < T(0), -angle, angle);
+}
+
+}  // namespace detail
+
+/// Covariant Green-Lagrange strains in the fibre frame (Eq. 10): beta_ab = (f_a.f_b - F_a.F_b)/2.
+/// The one strain measure that the laws take; components may be SIMD packs.
+template <class T>
+struct FibreStrain {
+  T b11{}, b22{}, b12{};
+};
+
+/// The angle between warp and weft in the reference state.
+template <class R>
+struct FibreAngle {
+  R delta;  ///< delta_bar [rad]; in (0, pi)
+  R cosine, sine;
+
+  /// @throws InputError for an angle of 0 or 180 deg or beyond: the two yarns would be parallel.
+  explicit FibreAngle(R delta_bar)
+      : delta(require_between("delta_bar", delta_bar, "rad", 0, std::numbers::pi)) {
+    using std::cos;
+    using std::sin;
+    cosine = cos(delta_bar);
+    sine = sin(delta_bar);
+  }
+
+  /// A right angle, with a cosine of exactly zero.
+  static FibreAngle right() { return FibreAngle(); }
+
+ private:
+  FibreAngle() : delta(detail::half_pi<R>()), cosine(0), sine(1) {}
+};
+
+/// Coefficients c of F_a = c_a^b Y_b (Eq. 9): rows are F1, F2 in the Cartesian axes.
+template <class R>
+Matrix2<R> fibre_from_cartesian(const FibreAngle<R>& angle) {
+  Matrix2<R> c;
+  c << R(1), R(0), angle.cosine, angle.sine;
+  return c;
+}
+
+/// beta = c E c^T (Eq. 10).
+template <class T>
+FibreStrain<T> fibre_strain(const Matrix2<T>& cartesian_strain, const Matrix2<T>& c) {
+  const Matrix2<T> beta = c * cartesian_strain * c.transpose();
+  return {beta(0, 0), beta(1, 1), beta(0, 1)};
+}
+
+/// Fibre strain from the current fibre vectors f_a = F F_a: exact to the rounding of f, which is
+/// enough for a drape in double precision.
+template <class T, class R>
+CROSSBEAM_INLINE FibreStrain<T> fibre_strain(const Vec3<T>& f1, const Vec3<T>& f2, R cosine) {
+  return {T(0.5) * (dot(f1, f1) - T(1)), T(0.5) * (dot(f2, f2) - T(1)),
+          T(0.5) * (dot(f1, f2) - T(cosine))};
+}
+
+/// The same from the increments g_a = f_a - F_a: no cancellation, tag [K-1].
+template <class T>
+CROSSBEAM_INLINE FibreStrain<T> fibre_strain_from_increment(const Vec3<T>& g1, const Vec3<T>& g2,
+                                                            const Vec3<T>& F1,
+                                                            const Vec3<T>& F2) {
+  return {dot(F1, g1) + T(0.5) * dot(g1, g1), dot(F2, g2) + T(0.5) * dot(g2, g2),
+          T(0.5) * (dot(F1, g2) + dot(F2, g1) + dot(g1, g2))};
+}
+
+/// Stretch lambda = l / L (Eq. 13, 17).
+template <class T>
+CROSSBEAM_INLINE T stretch(const T& beta) {
+  using std::sqrt;
+  return sqrt(T(1) + beta + beta);
+}
+
+/// Elongation lambda - 1 per unit length (Eq. 14) in the form that does not cancel, tag [K-2].
+template <class T>
+CROSSBEAM_INLINE T relative_elongation(const T& beta, const T& lambda) {
+  return (beta + beta) / (T(1) + lambda);
+}
+
+/// Cosine of the current angle between the yarns.
+template <class T, class R>
+CROSSBEAM_INLINE T fibre_cosine(const FibreStrain<T>& b, const T& lambda1, const T& lambda2,
+                                R reference_cosine) {
+  return (b.b12 + b.b12 + T(reference_cosine)) / (lambda1 * lambda2);
+}
+
+/// arcsin of any scalar: one formula for float, double and packs of them, so that lanes equal
+/// scalars; the library's own asin for wider types. Dual numbers bring their own overload.
+template <class T>
+CROSSBEAM_INLINE T arcsine(const T& x) {
+  using R = real_t<T>;
+  if constexpr (std::is_same_v<R, float> || std::is_same_v<R, double>) {
+    return detail::pack_asin(x);
+  } else {
+    using std::asin;
+    return asin(x);
+  }
+}
+
+/// Signed shear angle gamma = delta_bar - delta [rad]: positive when warp and weft close up. The sine
+/// form is accurate at small angles, tag [K-3].
+template <class T, class R>
+CROSSBEAM_INLINE T shear_angle(const T& cosine, const FibreAngle<R>& reference) {
+  return arcsine(cosine) - T(detail::half_pi<R>() - reference.delta);
+}
+
+}  // namespace crossbeam

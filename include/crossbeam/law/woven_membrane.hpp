@@ -1,0 +1,183 @@
+#pragma once
+/// @file
+/// The woven membrane: unit cell + shear layer as one constitutive law of the membrane strain (paper,
+/// section 3 and Eq. 26-27, with the corrections listed in docs/theory/law.md).
+///
+/// Strain measure: covariant Green-Lagrange strains in the fibre frame; work-conjugate stress: the
+/// contravariant second Piola-Kirchhoff components m^{ab}, S = m^{ab} F_a (x) F_b, per unit width
+/// [kN/mm, thickness 1].
+
+#include "crossbeam/cell/crossed_beam.hpp"
+#include "crossbeam/cell/second_order.hpp"
+#include "crossbeam/kinematics/convected.hpp"
+#include "crossbeam/kinematics/fibre_frame.hpp"
+#include "crossbeam/law/shear.hpp"
+
+#include <concepts>
+
+namespace crossbeam {
+
+/// Eq. 15 divides a yarn's force by a width. Corrected: the width normal to the yarn,
+/// L sin(delta_bar), which makes the law hyperelastic with the right energy. Literal: L, as printed.
+enum class YarnWidth { corrected, literal };
+
+/// Contravariant second Piola-Kirchhoff components in the fibre frame [kN/mm].
+template <class T>
+struct FibreStress {
+  T m11{}, m22{}, m12{};
+};
+
+template <class Cell, class Shear>
+class WovenMembrane {
+ public:
+  using Real = typename Cell::Real;
+  using R = Real;
+
+  /// @param width selects the corrected or the literal Eq. 15
+  /// @param control how the cell is iterated at every evaluation
+  WovenMembrane(Cell cell, Shear shear, FibreAngle<R> reference = FibreAngle<R>::right(),
+                YarnWidth width = YarnWidth::corrected,
+                SolverControl control = SolverControl::converged())
+      : cell_(std::move(cell)), shear_(std::move(shear)), reference_(reference), control_(control) {
+    const auto& p = cell_.parameters();
+    L1_ = p.warp.length;
+    L2_ = p.weft.length;
+    inv_A0_ = R(1) / (R(p.symmetry) * L1_ * L2_ *
+                      (width == YarnWidth::corrected ? reference.sine : R(1)));
+  }
+
+  [[nodiscard]] const Cell& cell() const { return cell_; }
+  [[nodiscard]] const Shear& shear() const { return shear_; }
+  [[nodiscard]] const FibreAngle<R>& reference() const { return reference_; }
+
+  template <class T>
+  using CellSolution = typename Cell::template Solution<T>;
+
+  /// One evaluation at a strain: kinematics of the yarns and the cell in equilibrium. Stress, energy
+  /// and tangent are read off it as far as they are wanted.
+  template <class T>
+  struct State {
+    FibreState<T> fibres;
+    T u1, u2;  ///< elongations of the cell's yarns [mm]
+    CellSolution<T> cell;
+  };
+
+  template <class T>
+  CROSSBEAM_INLINE State<T> evaluate(const FibreStrain<T>& beta) const {
+    State<T> s;
+    s.fibres = {beta, stretch(beta.b11), stretch(beta.b22)};
+    s.u1 = T(L1_) * relative_elongation(beta.b11, s.fibres.lambda1);
+    s.u2 = T(L2_) * relative_elongation(beta.b22, s.fibres.lambda2);
+    s.cell = cell_.solve(s.u1, s.u2, control_);
+    return s;
+  }
+
+  /// Yarn tensions per unit width, m_i lambda_i, as first Piola-Kirchhoff components (Eq. 15).
+  template <class T>
+  CROSSBEAM_INLINE Vector2<T> yarn_tension(const State<T>& s) const {
+    return {s.cell.forces.F1 * T(L1_ * inv_A0_), s.cell.forces.F2 * T(L2_ * inv_A0_)};
+  }
+
+  /// Eq. 15-20 and 26-27: cell + shear, tag [L-1].
+  template <class T>
+  CROSSBEAM_INLINE FibreStress<T> stress(const State<T>& s) const {
+    const StrainGradient<T> g = shear_.gradient(s.fibres);
+    return {s.cell.forces.F1 * T(L1_ * inv_A0_) / s.fibres.lambda1 + g.g1,
+            s.cell.forces.F2 * T(L2_ * inv_A0_) / s.fibres.lambda2 + g.g2, T(0.5) * g.g3};
+  }
+
+  /// Stored energy of the yarns per unit reference area [kN/mm]. Energy cells only.
+  template <class T>
+  CROSSBEAM_INLINE T yarn_energy(const State<T>& s) const
+    requires requires(const Cell& c) { c.energy(s.u1, s.u2, s.cell); }
+  {
+    return cell_.energy(s.u1, s.u2, s.cell) * T(inv_A0_);
+  }
+  template <class T>
+  CROSSBEAM_INLINE T shear_energy(const State<T>& s) const {
+    return shear_.energy(s.fibres);
+  }
+
+  /// d(dW/dbeta)/dbeta, tag [L-3]. Energy cells only.
+  template <class T>
+  CROSSBEAM_INLINE StrainHessian<T> hessian(const State<T>& s) const
+    requires requires(const Cell& c) { c.tangent(s.u1, s.u2, s.cell); }
+  {
+    const CellTangent<T> K = cell_.tangent(s.u1, s.u2, s.cell);
+    StrainHessian<T> h = shear_.hessian(s.fibres);
+    const T inv1 = T(1) / s.fibres.lambda1, inv2 = T(1) / s.fibres.lambda2;
+    h.h11 = h.h11 + T(L1_ * inv_A0_) * inv1 * inv1 *
+                        (T(L1_) * K.K11 - s.cell.forces.F1 * inv1);
+    h.h22 = h.h22 + T(L2_ * inv_A0_) * inv2 * inv2 *
+                        (T(L2_) * K.K22 - s.cell.forces.F2 * inv2);
+    h.h12 = h.h12 + T(L1_ * L2_ * inv_A0_) * K.K12 * inv1 * inv2;
+    return h;
+  }
+
+  /// Bound of the membrane stiffness for the critical time step [kN/mm], tag [C-10].
+  [[nodiscard]] R stiffness_bound() const {
+    return cell_.membrane_stiffness_bound(reference_.sine) + R(4) * shear_.modulus_bound();
+  }
+
+ private:
+  Cell cell_;
+  Shear shear_;
+  FibreAngle<R> reference_;
+  SolverControl control_;
+  R L1_{}, L2_{}, inv_A0_{};
+};
+
+/// @name Stress and tangent in the Cartesian axes Y, for host codes
+/// @{
+
+/// What a host code gets back at a strain E (Y components).
+template <class T>
+struct MembraneResponse {
+  T energy{};            ///< per unit reference area [kN/mm]
+  Matrix2<T> S;          ///< second Piola-Kirchhoff stress, Y components [kN/mm, t = 1]
+  Matrix3<T> dS_dE;      ///< rows (S11, S22, S12), columns (E11, E22, 2 E12); on request
+  CellStatus status = CellStatus::converged;
+};
+
+enum class Tangent { no, yes };
+
+/// S = c^T m c (Eq. 20 with contravariant m) at the Cartesian strain E; tags [L-1], [L-2], [L-3].
+template <class Law, class T>
+MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
+                                      Tangent want = Tangent::no) {
+  using R = typename Law::Real;
+  const Matrix2<R> c_real = fibre_from_cartesian(law.reference());
+  const Matrix2<T> c = c_real.template cast<T>();
+  const auto state = law.evaluate(fibre_strain<T>(E, c));
+  const FibreStress<T> m = law.stress(state);
+  MembraneResponse<T> out;
+  Matrix2<T> M;
+  M << m.m11, m.m12, m.m12, m.m22;
+  out.S = c.transpose() * M * c;
+  out.status = state.cell.status;
+  if constexpr (requires { law.yarn_energy(state); }) {
+    out.energy = law.yarn_energy(state) + law.shear_energy(state);
+    if (want == Tangent::yes) {
+      const StrainHessian<T> h = law.hessian(state);
+      Matrix3<T> H, V;
+      H << h.h11, h.h12, h.h13, h.h12, h.h22, h.h23, h.h13, h.h23, h.h33;
+      V << c(0, 0) * c(0, 0), c(0, 1) * c(0, 1), c(0, 0) * c(0, 1),  //
+          c(1, 0) * c(1, 0), c(1, 1) * c(1, 1), c(1, 0) * c(1, 1),   //
+          c(0, 0) * c(1, 0), c(0, 1) * c(1, 1),
+          T(0.5) * (c(0, 0) * c(1, 1) + c(0, 1) * c(1, 0));
+      out.dS_dE = V.transpose() * H * V;
+    }
+  }
+  return out;
+}
+
+/// Cauchy stress (Eq. 21) from S and the surface gradient; J is the area ratio. For a host whose J
+/// is that of the volume, give its thickness stretch: the membrane force does not change, tag [L-4].
+template <class T>
+Matrix3<T> cauchy_stress(const Matrix2<T>& S, const Base<T>& gradient, const T& area_ratio,
+                         const T& thickness_stretch = T(1)) {
+  return gradient * S * gradient.transpose() / (area_ratio * thickness_stretch);
+}
+/// @}
+
+}  // namespace crossbeam
