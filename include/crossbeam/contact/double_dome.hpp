@@ -69,6 +69,7 @@ class DomeProfile {
   [[nodiscard]] Value at(R s) const {
     using std::sqrt;
     if (s <= flat_) return {base_ + depth_, R(0)};
+    if (s >= foot_) return {base_, R(0)};
     if (s < wall_start_) {
       // Drop of a circle as t^2 / (r + sqrt(r^2 - t^2)): no cancellation near the flat.
       const R t = s - flat_;
@@ -77,12 +78,9 @@ class DomeProfile {
     }
     if (s < wall_end_)
       return {base_ + depth_ - wall_drop_ - (s - wall_start_) * sin_ / cos_, -sin_ / cos_};
-    if (s < foot_) {
-      const R t = foot_ - s;
-      const R root = sqrt((fillet_ - t) * (fillet_ + t));
-      return {base_ + t * t / (fillet_ + root), -t / root};
-    }
-    return {base_, R(0)};
+    const R t = foot_ - s;
+    const R root = sqrt((fillet_ - t) * (fillet_ + t));
+    return {base_ + t * t / (fillet_ + root), -t / root};
   }
 
   /// The inverse, at the level given by u = sqrt(delta), w = sqrt(eps), u^2 + w^2 = depth [T-10].
@@ -133,8 +131,10 @@ class DoubleDome {
               parameters.depth, offset),
         max_slope_(slope_bound()) {}
 
-  /// Height and gradient.
+  /// Height and gradient; NaN in, NaN out.
   [[nodiscard]] HeightSample<R> height(R x, R y) const {
+    using std::isnan;
+    if (isnan(x) || isnan(y)) return {x + y, x + y, x + y};
     const R sign_x = x < R(0) ? R(-1) : R(1), sign_y = y < R(0) ? R(-1) : R(1);
     const HeightSample<R> s = quarter(sign_x * x, sign_y * y);
     return {s.h, sign_x * s.h_x, sign_y * s.h_y};

@@ -169,11 +169,14 @@ class HeightTable {
       p.cell[0] = cell < axis.cells ? cell : axis.cells - 1;
       base = T(R(p.cell[0]));
     } else {
+      R in[lanes_v<T>], low[lanes_v<T>];
+      inside.store(in);
       for (int lane = 0; lane < lanes_v<T>; ++lane) {
-        const int cell = static_cast<int>(inside[lane]);
+        const int cell = static_cast<int>(in[lane]);
         p.cell[lane] = cell < axis.cells ? cell : axis.cells - 1;
-        base.set(lane, R(p.cell[lane]));
+        low[lane] = R(p.cell[lane]);
       }
+      base = T::load(low);
     }
     const T v = t - base, rest = one - v;
     const T scale = sign * T(axis.per_spacing);
@@ -195,9 +198,10 @@ class HeightTable {
     if constexpr (lanes_v<T> == 1) {
       return T(coefficient(0));
     } else {
-      T r{};
-      for (int lane = 0; lane < lanes_v<T>; ++lane) r.set(lane, coefficient(lane));
-      return r;
+      // Through memory: g++ and clang fill a register lane by lane more slowly, floats most of all.
+      R r[lanes_v<T>];
+      for (int lane = 0; lane < lanes_v<T>; ++lane) r[lane] = coefficient(lane);
+      return T::load(r);
     }
   }
 
