@@ -1,0 +1,505 @@
+#include "scene.hpp"
+
+#include "fields.hpp"
+#include "spelling.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#ifndef CROSSBEAM_SCENE_DIR
+#error "define CROSSBEAM_SCENE_DIR as the string of the folder drape_demo/scene"
+#endif
+
+namespace crossbeam::drape {
+
+std::string Range::text(bool whole) const {
+  const std::string noun = whole ? "a whole number" : "a number";
+  const auto number = [](double value) { return fmt::format("{}", value); };
+  const bool below = std::isfinite(high);
+  switch (kind) {
+    case Kind::closed:
+      return noun + " >= " + number(low) + (below ? " and <= " + number(high) : "");
+    case Kind::low_open:
+      return noun + " > " + number(low) + (below ? " and <= " + number(high) : "");
+    case Kind::open: return noun + " > " + number(low) + " and < " + fmt::format("{:.6g}", high);
+    case Kind::one_of_two: return number(low) + " or " + number(high);
+  }
+  return noun;
+}
+
+namespace {
+
+/// Where a field was set, for messages: " (realistic.toml:12)", or "" when it is not known.
+using Locator = std::function<std::string(const std::string& field)>;
+
+template <class E>
+std::vector<std::string> choice_names() {
+  std::vector<std::string> names;
+  for (const auto& named : names_of(E{})) names.emplace_back(named.name);
+  return names;
+}
+
+template <class E>
+bool choose(E& value, const std::string& text) {
+  for (const auto& named : names_of(E{})) {
+    if (text != named.name) continue;
+    value = named.value;
+    return true;
+  }
+  return false;
+}
+
+std::string hint(const std::string& wrong, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(wrong, names);
+  return nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?";
+}
+
+// -------------------------------------------------------------------------------------------------
+// Ranges of single fields
+
+class RangeCheck {
+ public:
+  explicit RangeCheck(const Locator& where) : where_(where) {}
+
+  void enter(const char* name) { path_.enter(name); }
+  void leave() { path_.leave(); }
+  template <class T>
+  void real(const char* name, const T& value, const char* unit, const Range& range) {
+    if (!std::isfinite(value) || !range.contains(value))
+      refuse(path_.name(name), fmt::format("{}", value), unit, range.text());
+  }
+  template <class T>
+  void integer(const char* name, const T& value, const char* unit, const Range& range) {
+    if (!range.contains(static_cast<double>(value)))
+      refuse(path_.name(name), std::to_string(value), unit, range.text(true));
+  }
+  template <class E>
+  void choice(const char*, const E&) {}
+  void flag(const char*, const bool&) {}
+  void text(const char*, const std::string&) {}
+  void list(const char* name, const std::vector<double>& values, const char* unit) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!std::isfinite(values[i]))
+        refuse(fmt::format("{}[{}]", path_.name(name), i), fmt::format("{}", values[i]), unit,
+               "a finite number", path_.name(name));
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& field, const std::string& value,
+                           const std::string& unit, const std::string& admissible,
+                           const std::string& set_as = "") const {
+    throw InputError(field, value, unit == "-" ? "" : unit,
+                     admissible + where_(set_as.empty() ? field : set_as));
+  }
+
+  const Locator& where_;
+  FieldPath path_;
+};
+
+// -------------------------------------------------------------------------------------------------
+// Rules that join several fields
+
+/// The shear laws must not lose stiffness below zero up to this angle, beyond every formed part.
+constexpr double largest_shear = 1.2;
+
+void check_polynomial(const ShearInput& shear, const Locator& where) {
+  const std::string field = "fabric.shear.coefficients";
+  const std::string rule = fmt::format(
+      "G(g) = sum of coefficients[k] g^k must be >= 0 for every shear angle g from 0 to {} rad",
+      largest_shear);
+  if (shear.coefficients.empty())
+    throw InputError(field, "[]", "kN/mm",
+                     "at least one coefficient when fabric.shear.kind is \"polynomial\"" +
+                         where("fabric.shear.kind"));
+  constexpr int samples = 1200;
+  for (int i = 0; i <= samples; ++i) {
+    const double angle = largest_shear * i / samples;
+    double modulus = 0;
+    for (auto c = shear.coefficients.rbegin(); c != shear.coefficients.rend(); ++c)
+      modulus = modulus * angle + *c;
+    if (!(modulus >= 0))
+      throw InputError(field, fmt::format("{}", fmt::join(shear.coefficients, ", ")), "kN/mm",
+                       fmt::format("{}, but G({:.3f}) = {:.4g}", rule, angle, modulus) +
+                           where(field));
+  }
+}
+
+void check_table(const ShearInput& shear, const Locator& where) {
+  const std::string angle = "fabric.shear.angle", traction = "fabric.shear.traction";
+  const auto refuse = [&where](const std::string& field, const std::string& value,
+                               const std::string& unit, const std::string& rule) {
+    throw InputError(field, value, unit, rule + where(field.substr(0, field.find('['))));
+  };
+  if (shear.angle.size() < 2)
+    refuse(angle, fmt::format("{} numbers", shear.angle.size()), "rad",
+           "at least two angles when fabric.shear.kind is \"tabulated\"");
+  if (shear.traction.size() != shear.angle.size())
+    refuse(traction, fmt::format("{} numbers", shear.traction.size()), "kN/mm",
+           fmt::format("as many as fabric.shear.angle, {}", shear.angle.size()));
+  const auto increasing = [&refuse](const std::vector<double>& values, const std::string& field,
+                                    const std::string& unit) {
+    if (values[0] != 0)
+      refuse(field + "[0]", fmt::format("{}", values[0]), unit, "0: the table starts at (0, 0)");
+    for (std::size_t i = 1; i < values.size(); ++i)
+      if (!(values[i] > values[i - 1]))
+        refuse(fmt::format("{}[{}]", field, i), fmt::format("{}", values[i]), unit,
+               fmt::format("a number > {}, the one before it", values[i - 1]));
+  };
+  increasing(shear.angle, angle, "rad");
+  increasing(shear.traction, traction, "kN/mm");
+  if (!(shear.angle.back() < 1.5707))
+    refuse(fmt::format("{}[{}]", angle, shear.angle.size() - 1),
+           fmt::format("{}", shear.angle.back()), "rad", "a number < pi/2");
+}
+
+void check_case(const DrapeCase& c, const Locator& where) {
+  RangeCheck ranges(where);
+  visit_fields(c, ranges);
+  crossbeam::validate(c.fabric.cell, "fabric.cell");
+
+  if (c.fabric.shear.kind == ShearLawKind::polynomial) check_polynomial(c.fabric.shear, where);
+  if (c.fabric.shear.kind == ShearLawKind::tabulated) check_table(c.fabric.shear, where);
+
+  const double smaller = std::min(c.blank.half_width, c.blank.half_length);
+  if (c.blank.element_size > smaller / 2)
+    throw InputError("blank.element_size", fmt::format("{}", c.blank.element_size), "mm",
+                     fmt::format("at most half of the smaller of half_width and half_length, {}",
+                                 smaller / 2) +
+                         where("blank.element_size"));
+  if (c.blank.perturbation > c.blank.element_size / 10)
+    throw InputError("blank.perturbation", fmt::format("{}", c.blank.perturbation), "mm",
+                     fmt::format("at most a tenth of element_size, {}",
+                                 c.blank.element_size / 10) +
+                         where("blank.perturbation"));
+}
+
+// -------------------------------------------------------------------------------------------------
+// TOML -> DrapeCase
+
+class TomlReader {
+ public:
+  TomlReader(const toml::table& root, std::string source) : source_(std::move(source)) {
+    levels_.push_back({&root, {}});
+  }
+
+  void enter(const char* name) {
+    const toml::node* node = take(name);
+    const toml::table* table = nullptr;
+    if (node != nullptr) {
+      table = node->as_table();
+      if (table == nullptr) refuse(path_.name(name), *node, "", "a table, [" + path_.name(name) + "]");
+    }
+    path_.enter(name);
+    levels_.push_back({table, {}});
+  }
+
+  void leave() {
+    refuse_unknown_keys();
+    levels_.pop_back();
+    path_.leave();
+  }
+
+  template <class T>
+  void real(const char* name, T& value, const char* unit, const Range& range) {
+    const toml::node* node = take(name);
+    if (node == nullptr) return;
+    if (!node->is_number()) refuse(path_.name(name), *node, unit, range.text());
+    value = T(*node->value<double>());
+  }
+
+  template <class T>
+  void integer(const char* name, T& value, const char* unit, const Range& range) {
+    const toml::node* node = take(name);
+    if (node == nullptr) return;
+    if (!node->is_integer() || !std::in_range<T>(*node->value<std::int64_t>()))
+      refuse(path_.name(name), *node, unit, range.text(true));
+    value = static_cast<T>(*node->value<std::int64_t>());
+  }
+
+  template <class E>
+  void choice(const char* name, E& value) {
+    const toml::node* node = take(name);
+    if (node == nullptr) return;
+    const auto names = choice_names<E>();
+    const std::string text = node->is_string() ? *node->value<std::string>() : "";
+    if (!choose(value, text))
+      refuse(path_.name(name), *node, "", alternatives(names) + hint(text, names));
+  }
+
+  void flag(const char* name, bool& value) {
+    const toml::node* node = take(name);
+    if (node == nullptr) return;
+    if (!node->is_boolean()) refuse(path_.name(name), *node, "", "true or false");
+    value = *node->value<bool>();
+  }
+
+  void text(const char* name, std::string& value) {
+    const toml::node* node = take(name);
+    if (node == nullptr) return;
+    if (!node->is_string()) refuse(path_.name(name), *node, "", "a text in quotation marks");
+    value = *node->value<std::string>();
+  }
+
+  void list(const char* name, std::vector<double>& values, const char* unit) {
+    const toml::node* node = take(name);
+    if (node == nullptr) return;
+    const std::string admissible = "a list of numbers, [a, b, ...]";
+    const toml::array* array = node->as_array();
+    if (array == nullptr) refuse(path_.name(name), *node, unit, admissible);
+    values.clear();
+    for (const toml::node& item : *array) {
+      if (!item.is_number()) refuse(path_.name(name), item, unit, admissible);
+      values.push_back(*item.value<double>());
+    }
+  }
+
+  /// To be called after the visit: the root has no leave() of its own.
+  void finish() const { refuse_unknown_keys(); }
+
+  /// Where the fields were set.
+  [[nodiscard]] Locator locator() const {
+    return [source = source_, lines = lines_](const std::string& field) {
+      const auto line = lines.find(field);
+      return line == lines.end() ? std::string()
+                                 : fmt::format(" ({}:{})", source, line->second);
+    };
+  }
+
+ private:
+  struct Level {
+    const toml::table* table;        ///< null when the file leaves the table out
+    std::vector<std::string> known;  ///< the keys asked for
+  };
+
+  const toml::node* take(const char* name) {
+    Level& level = levels_.back();
+    level.known.emplace_back(name);
+    const toml::node* node = level.table == nullptr ? nullptr : level.table->get(name);
+    if (node != nullptr) lines_[path_.name(name)] = node->source().begin.line;
+    return node;
+  }
+
+  [[nodiscard]] std::string at(const toml::node& node) const {
+    return fmt::format(" ({}:{})", source_, node.source().begin.line);
+  }
+
+  [[noreturn]] void refuse(const std::string& field, const toml::node& node,
+                           const std::string& unit, const std::string& admissible) const {
+    std::ostringstream value;
+    if (node.is_table())
+      value << "{...}";
+    else
+      node.visit([&value](const auto& typed) { value << typed; });
+    throw InputError(field, value.str(), unit == "-" ? "" : unit, admissible + at(node));
+  }
+
+  void refuse_unknown_keys() const {
+    const Level& level = levels_.back();
+    if (level.table == nullptr) return;
+    for (const auto& [key, node] : *level.table) {
+      const std::string name(key.str());
+      if (std::find(level.known.begin(), level.known.end(), name) != level.known.end()) continue;
+      const std::string table = path_.name("");
+      refuse(path_.name(name), node, "",
+             fmt::format("no such key{}; the keys {} are {}", hint(name, level.known),
+                         table.empty() ? "of a scene"
+                                       : "of [" + table.substr(0, table.size() - 1) + "]",
+                         fmt::join(level.known, ", ")));
+    }
+  }
+
+  std::string source_;
+  FieldPath path_;
+  std::vector<Level> levels_;
+  std::map<std::string, toml::source_index> lines_;
+};
+
+// -------------------------------------------------------------------------------------------------
+// Text -> one field
+
+class FieldSetter {
+ public:
+  FieldSetter(const std::string& field, const std::string& text, const std::string& shown_as)
+      : field_(field), text_(text), shown_as_(shown_as) {}
+
+  void enter(const char* name) { path_.enter(name); }
+  void leave() { path_.leave(); }
+  template <class T>
+  void real(const char* name, T& value, const char* unit, const Range& range) {
+    if (wanted(name) && !parse(value)) refuse(unit, range.text());
+  }
+  template <class T>
+  void integer(const char* name, T& value, const char* unit, const Range& range) {
+    if (wanted(name) && !parse(value)) refuse(unit, range.text(true));
+  }
+  template <class E>
+  void choice(const char* name, E& value) {
+    if (!wanted(name)) return;
+    const auto names = choice_names<E>();
+    if (!choose(value, text_)) refuse("", alternatives(names) + hint(text_, names));
+  }
+  void flag(const char* name, bool& value) {
+    if (!wanted(name)) return;
+    if (text_ != "true" && text_ != "false") refuse("", "true or false");
+    value = text_ == "true";
+  }
+  void text(const char* name, std::string& value) {
+    if (wanted(name)) value = text_;
+  }
+  void list(const char* name, std::vector<double>& values, const char* unit) {
+    if (!wanted(name)) return;
+    double value = 0;
+    if (!parse(value)) refuse(unit, "a number");
+    values.assign(1, value);
+  }
+
+  [[nodiscard]] bool found() const { return found_; }
+
+ private:
+  bool wanted(const char* name) {
+    const bool here = path_.name(name) == field_;
+    found_ = found_ || here;
+    return here;
+  }
+  template <class T>
+  bool parse(T& value) const {
+    const char* end = text_.data() + text_.size();
+    const auto [stop, error] = std::from_chars(text_.data(), end, value);
+    return error == std::errc{} && stop == end;
+  }
+  [[noreturn]] void refuse(const std::string& unit, const std::string& admissible) const {
+    throw InputError(shown_as_, text_, unit == "-" ? "" : unit, admissible);
+  }
+
+  const std::string &field_, &text_, &shown_as_;
+  FieldPath path_;
+  bool found_ = false;
+};
+
+/// Collects name, unit and range of every field.
+class FieldList {
+ public:
+  struct Entry {
+    std::string name, unit, range;
+  };
+
+  void enter(const char* name) { path_.enter(name); }
+  void leave() { path_.leave(); }
+  template <class T>
+  void real(const char* name, const T&, const char* unit, const Range& range) {
+    add(name, unit, range.text());
+  }
+  template <class T>
+  void integer(const char* name, const T&, const char* unit, const Range& range) {
+    add(name, unit, range.text(true));
+  }
+  template <class E>
+  void choice(const char* name, const E&) {
+    add(name, "", alternatives(choice_names<E>()));
+  }
+  void flag(const char* name, const bool&) { add(name, "", "true or false"); }
+  void text(const char* name, const std::string&) { add(name, "", "any text"); }
+  void list(const char* name, const std::vector<double>&, const char* unit) {
+    add(name, unit, "a list of numbers");
+  }
+
+  std::vector<Entry> entries;
+
+ private:
+  void add(const char* name, const char* unit, const std::string& range) {
+    entries.push_back({path_.name(name), unit, range});
+  }
+  FieldPath path_;
+};
+
+std::vector<FieldList::Entry> all_fields() {
+  const DrapeCase any{};
+  FieldList list;
+  visit_fields(any, list);
+  return list.entries;
+}
+
+const std::vector<std::string>& supplied_cases() {
+  static const std::vector<std::string> names{"realistic", "paper", "paper-literal"};
+  return names;
+}
+
+}  // namespace
+
+void validate(const DrapeCase& drape_case) {
+  check_case(drape_case, [](const std::string&) { return std::string(); });
+}
+
+std::filesystem::path scene_folder() { return CROSSBEAM_SCENE_DIR; }
+
+std::filesystem::path scene_path(const std::string& case_or_path) {
+  const auto& names = supplied_cases();
+  if (std::find(names.begin(), names.end(), case_or_path) != names.end())
+    return scene_folder() / (case_or_path + ".toml");
+  const std::filesystem::path path(case_or_path);
+  if (path.extension() != ".toml")
+    throw InputError("--case", case_or_path, "",
+                     alternatives(names) + ", or the path of a scene file, *.toml" +
+                         hint(case_or_path, names));
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError("--case", case_or_path, "", "the path of an existing scene file");
+  return path;
+}
+
+DrapeCase load_scene(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    throw InputError("scene file", file.string(), "", "a file that exists and can be read");
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return parse_scene(text, file.string());
+}
+
+DrapeCase parse_scene(std::string_view text, const std::string& source) {
+  toml::table root;
+  try {
+    root = toml::parse(text, source);
+  } catch (const toml::parse_error& error) {
+    throw InputError("scene file", fmt::format("{}:{}", source, error.source().begin.line), "",
+                     fmt::format("valid TOML ({}, column {})", error.description(),
+                                 error.source().begin.column));
+  }
+  DrapeCase drape_case;
+  TomlReader reader(root, source);
+  visit_fields(drape_case, reader);
+  reader.finish();
+  check_case(drape_case, reader.locator());
+  return drape_case;
+}
+
+void set_field(DrapeCase& drape_case, const std::string& field, const std::string& text,
+               const std::string& shown_as) {
+  FieldSetter setter(field, text, shown_as);
+  visit_fields(drape_case, setter);
+  CROSSBEAM_EXPECTS(setter.found());
+}
+
+std::vector<std::string> field_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : all_fields()) names.push_back(entry.name);
+  return names;
+}
+
+std::string field_range(const std::string& field) {
+  for (const auto& entry : all_fields())
+    if (entry.name == field)
+      return (entry.unit.empty() || entry.unit == "-" ? "" : "[" + entry.unit + "] ") + entry.range;
+  return "";
+}
+
+}  // namespace crossbeam::drape
