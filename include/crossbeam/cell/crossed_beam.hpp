@@ -215,8 +215,11 @@ class CrossedBeamCell {
     const T h1 = y1.k_hh(yarn1_), h2 = y2.k_hh(yarn2_);
     const T m1 = y1.k_Lh(yarn1_), m2 = y2.k_Lh(yarn2_);
     const T B = at.contact_stiffness;
-    // A straight yarn without bending has k_hh = 0 and k_Lh = 0 while the contact is open.
-    const T det = maximum(h1 * h2 + B * (h1 + h2), T(std::numeric_limits<R>::min()));
+    T det = h1 * h2 + B * (h1 + h2);
+    // A straight yarn without bending has k_hh = 0 and k_Lh = 0 while the contact is open. (The
+    // bilateral contact is never open, and det < 0 is the honest answer where it is unstable.)
+    if constexpr (ContactKind == Contact::unilateral)
+      det = maximum(det, T(std::numeric_limits<R>::min()));
     const T inv = T(1) / det;
     const T zero(0);
     return {y1.k_LL(yarn1_) - m1 * m1 * (h2 + B) * inv + select(u1 < zero, T(kres()), zero),
@@ -245,12 +248,18 @@ class CrossedBeamCell {
     return T(R(0.5) * kres()) * shortening * shortening;
   }
 
+  /// l0^2 - (L + u)^2: square of the height at which the yarn is as long as unstressed; negative when
+  /// even the straight yarn is stretched.
+  template <class T>
+  CROSSBEAM_INLINE static T spare_height_squared(const YarnConstants<R>& y, const T& u) {
+    return T(y.H * y.H) - u * (T(R(2) * y.L) + u);
+  }
+
   /// Closed-form start on the convex branch, tag [C-5]. Returns true when nothing has to be iterated.
   template <class T>
   CROSSBEAM_INLINE bool start(const T& u1, const T& u2, T& w1, T& w2) const {
     using std::sqrt;
-    const T a1 = T(yarn1_.H * yarn1_.H) - u1 * (T(R(2) * yarn1_.L) + u1);
-    const T a2 = T(yarn2_.H * yarn2_.H) - u2 * (T(R(2) * yarn2_.L) + u2);
+    const T a1 = spare_height_squared(yarn1_, u1), a2 = spare_height_squared(yarn2_, u2);
     const T hs1 = sqrt(maximum(a1, T(0))), hs2 = sqrt(maximum(a2, T(0)));
     const T gap = maximum(T(yarn1_.H + yarn2_.H) - hs1 - hs2, T(0));
     const T x1 = hs1 + T(0.5) * gap, x2 = hs2 + T(0.5) * gap;
@@ -313,6 +322,13 @@ class CrossedBeamCell {
     CellForces<T>& out = solution.forces;
     out.F1 = y1.horizontal_force(yarn1_);
     out.F2 = y2.horizontal_force(yarn2_);
+    if (ContactKind == Contact::unilateral && !has_bending_) {
+      // A crimped yarn without bending and without contact carries exactly nothing: the closed form,
+      // not the rounding of its length.
+      const auto open = solution.contact_stiffness <= T(0);
+      out.F1 = select(open && spare_height_squared(yarn1_, u1) > T(0), T(0), out.F1);
+      out.F2 = select(open && spare_height_squared(yarn2_, u2) > T(0), T(0), out.F2);
+    }
     if (kres() > R(0)) {
       out.F1 = out.F1 + T(kres()) * minimum(u1, T(0));
       out.F2 = out.F2 + T(kres()) * minimum(u2, T(0));

@@ -6,7 +6,10 @@
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/linalg.hpp"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
+#include <limits>
 
 namespace crossbeam {
 
@@ -52,7 +55,7 @@ Matrix2<T> cartesian_from_convected(const Base<T>& reference, const T& alpha_bar
   using std::sqrt;
   const Matrix2<T> A = metric(reference);
   const T det = metric_determinant(reference);
-  if (!(det > T(0)) || !(A(0, 0) > T(0)))
+  if (!(det > T(0) && A(0, 0) > T(0) && det <= T(std::numeric_limits<T>::max())))
     throw InputError("element base", "area " + detail::to_text(det) + "^(1/2)", "mm^2",
                      "two finite base vectors that span an area > 0");
   require_finite("alpha_bar", alpha_bar, "rad");

@@ -29,6 +29,7 @@ R half_pi() {
 /// polynomial [K-4] for |x| <= 1/2, the half-angle formula above. Arguments beyond +-1 are clamped.
 template <class T>
 CROSSBEAM_INLINE T pack_asin(const T& x) {
+  using std::sqrt;
   using R = real_t<T>;
   constexpr double coefficients[] = {
       0.028757851367421566, -0.014851887071247204, 0.01740087944269402,  0.005457506718640358,

@@ -142,6 +142,7 @@ struct MembraneResponse {
 enum class Tangent { no, yes };
 
 /// S = c^T m c (Eq. 20 with contravariant m) at the Cartesian strain E; tags [L-1], [L-2], [L-3].
+/// A cell without a potential (SecondOrderCell) has no tangent, and its energy stays 0.
 template <class Law, class T>
 MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
                                       Tangent want = Tangent::no) {
@@ -167,6 +168,8 @@ MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
           T(0.5) * (c(0, 0) * c(1, 1) + c(0, 1) * c(1, 0));
       out.dS_dE = V.transpose() * H * V;
     }
+  } else {
+    CROSSBEAM_EXPECTS(want == Tangent::no);
   }
   return out;
 }
