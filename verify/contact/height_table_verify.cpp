@@ -33,13 +33,15 @@ double wave_x(double x, double y) { return -pi / 3 * std::sin(pi * x / 3) * std:
 double wave_y(double x, double y) { return -pi * std::cos(pi * x / 3) * std::sin(pi * y); }
 
 struct TableError {
-  double height = 0, angle = 0;  // [mm], [deg]
+  double height = 0, angle = 0;            // largest [mm], [deg]
+  double mean_height = 0, mean_angle = 0;  // [mm], [deg]
 };
 
 template <class Use>
 TableError error_against(const HeightTable<double>& table, const DoubleDome<double>& tool,
                          double step, const Use& use) {
   TableError e;
+  double count = 0;
   for (double x = 0.013; x < 95; x += step)
     for (double y = 0.017; y < 195; y += step) {
       if (!use(x, y)) continue;
@@ -48,8 +50,11 @@ TableError error_against(const HeightTable<double>& table, const DoubleDome<doub
       // Angle between (-h_x, -h_y, 1) of both, by the cross product: exact for small angles.
       const double c_x = a.h_y - b.h_y, c_y = b.h_x - a.h_x, c_z = a.h_x * b.h_y - a.h_y * b.h_x;
       const double dot = 1 + a.h_x * b.h_x + a.h_y * b.h_y;
-      e.angle = std::fmax(e.angle, std::atan2(std::hypot(c_x, c_y, c_z), dot) * 180 / pi);
+      const double angle = std::atan2(std::hypot(c_x, c_y, c_z), dot) * 180 / pi;
+      e.angle = std::fmax(e.angle, angle);
+      e.mean_height += std::abs(a.h - b.h), e.mean_angle += angle, ++count;
     }
+  e.mean_height /= count, e.mean_angle /= count;
   return e;
 }
 
@@ -78,7 +83,7 @@ TEST_CASE("V-CONT-09 the table's gradient is the exact derivative of its value, 
     }
     CHECK(steepest > 2.4);  // premise: the gradients were not small
     CHECK(steepest <= table.max_slope());
-    CHECK(table.max_slope() < 1.1 * steepest);
+    CHECK(table.max_slope() < 1.2 * steepest);  // of use: 4 % too large at 0.5 mm, 14 % at 2 mm
     for (int k = 1; k < 4; ++k) {
       // A few points straddle a cell border, where the curvature jumps: third digit.
       CHECK(std::log2(remainder[k - 1] / remainder[k]) > 1.98);
@@ -134,7 +139,7 @@ TEST_CASE("V-CONT-10 the table converges to the tool and is close at 0.5 mm") {
   }
   SUBCASE("a smooth field: order 3 in value, 2 in gradient") {
     double value[4] = {}, gradient[4] = {};
-    const double spacing[4] = {0.2, 0.1, 0.05, 0.025};
+    const double spacing[4] = {0.1, 0.05, 0.025, 0.0125};
     for (int k = 0; k < 4; ++k) {
       const HeightTable<double> table(wave, {0, 3, 0, 2, spacing[k], false, false});
       for (double x = 0; x <= 3; x += 0.0073)
@@ -154,35 +159,42 @@ TEST_CASE("V-CONT-10 the table converges to the tool and is close at 0.5 mm") {
   SUBCASE("the double dome") {
     const DoubleDome<double> tool({}, 0.5);
     const auto everywhere = [](double, double) { return true; };
-    // Smooth parts: 3.5 mm and more from every border between two arcs.
+    // Smooth parts: 2.5 mm and more from every border between two arcs. A border's ringing dies by
+    // 0.17 per cell; 5 cells of 0.5 mm leave a ten-thousandth of it.
+    constexpr double margin = 2.5;
     const auto smooth = [&](double x, double y) {
       const auto clear = [](double s, const DomeProfile<double>& p) {
         for (double border : {p.flat(), p.wall_start(), p.wall_end(), p.foot()})
-          if (std::abs(s - border) < 3.5) return false;
+          if (std::abs(s - border) < margin) return false;
         return true;
       };
-      if (y < 68.5) return clear(x, tool.ridge());
-      return y > 103.5 && (std::hypot(x, y - 100) < 3.5 || clear(std::hypot(x, y - 100), tool.dome()));
+      if (y < 72 - margin) return clear(x, tool.ridge());
+      const double rho = std::hypot(x, y - 100);
+      return y > 100 + margin && (rho < margin || clear(rho, tool.dome()));
     };
     TableError before, smooth_before;
-    for (double spacing : {1.0, 0.5, 0.25}) {
+    for (double spacing : {0.5, 0.25, 0.125}) {
       const HeightTable<double> table(tool, quarter_grid(spacing));
       const TableError all = error_against(table, tool, 0.097, everywhere);
       const TableError part = error_against(table, tool, 0.097, smooth);
       MESSAGE("spacing ", spacing, " mm: at most ", all.height, " mm and ", all.angle,
               " deg; away from the borders of the arcs ", part.height, " mm and ", part.angle,
               " deg; ", table.bytes() / 1024, " KiB");
-      if (spacing < 1) {
+      if (spacing < 0.5) {
         // Curvature jumps at the borders: order 2 in value, 1 in slope there; 3 and 2 elsewhere.
-        CHECK(std::log2(before.height / all.height) > 1.7);
-        CHECK(std::log2(before.angle / all.angle) > 0.8);
-        CHECK(std::abs(std::log2(smooth_before.height / part.height) - 3) < 0.3);
-        CHECK(std::abs(std::log2(smooth_before.angle / part.angle) - 2) < 0.3);
-      }
-      if (spacing == 0.5) {
-        // What a drape may take for granted: a hundredth of the fabric's thickness.
+        // How a border falls into the cells makes the largest error jitter by some 20 %: a third
+        // of an order. The mean over the smooth parts has its order cleanly.
+        CHECK(std::abs(std::log2(before.height / all.height) - 2) < 0.33);
+        CHECK(std::abs(std::log2(before.angle / all.angle) - 1) < 0.33);
+        INFO("means ", part.mean_height, " ", part.mean_angle, ", before ",
+             smooth_before.mean_height, " ", smooth_before.mean_angle);
+        CHECK(std::abs(std::log2(smooth_before.mean_height / part.mean_height) - 3) < 0.05);
+        CHECK(std::abs(std::log2(smooth_before.mean_angle / part.mean_angle) - 2) < 0.05);
+      } else {
+        // What a drape may take for granted: about a hundredth of the fabric's thickness, and less
+        // than the normal turns over a tenth of an element on the ridge's edge.
         CHECK(all.height < 0.012);
-        CHECK(all.angle < 1.5);
+        CHECK(all.angle < 1);
       }
       before = all, smooth_before = part;
     }
