@@ -17,6 +17,11 @@ struct YarnParameters {
   R cross_section = R(1);                   ///< A [mm^2]; > 0 (Table 1)
   R second_moment_of_area = R(1) / R(10000);  ///< I [mm^4]; >= 0 (Table 1)
   R length = R(2.5);  ///< L, in-plane distance from inflection to crossing [mm]; > 0 (Table 1)
+
+  template <class S>
+  [[nodiscard]] YarnParameters<S> cast() const {
+    return {S(youngs_modulus), S(cross_section), S(second_moment_of_area), S(length)};
+  }
 };
 
 /// The cell: warp beam 1, weft beam 2, contact beam 3. Defaults are Table 1 of the paper, with the
@@ -33,6 +38,20 @@ struct CellParameters {
   R residual_compression_stiffness = R(0);  ///< kres, extra axial stiffness of a shortened yarn
                                             ///< [kN/mm]; >= 0, tag [C-8]
   int symmetry = 1;  ///< nsym: 1 as printed in Eq. 15; 2 for the full period, with A3/2; tag [C-9]
+
+  /// The same parameters in another precision.
+  template <class S>
+  [[nodiscard]] CellParameters<S> cast() const {
+    return {warp.template cast<S>(),
+            weft.template cast<S>(),
+            S(contact_modulus),
+            S(contact_area),
+            S(contact_length),
+            S(warp_height_fraction),
+            S(bending_boundary_factor),
+            S(residual_compression_stiffness),
+            symmetry};
+  }
 };
 
 /// Throws InputError naming the field, its value, unit and admissible range.

@@ -1,0 +1,299 @@
+#pragma once
+/// @file
+/// Contact of the fabric's nodes with one rigid tool: penalty with damping, Coulomb friction, culling
+/// of the nodes that provably cannot touch. Theory: docs/theory/contact.md.
+
+#include "crossbeam/contact/surface.hpp"
+#include "crossbeam/mesh/nodal_state.hpp"
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+namespace crossbeam {
+
+enum class Friction {
+  elastic_stick,  ///< elastic stick and return mapping onto Coulomb's cone, tag [F-2]
+  viscous,        ///< slip-rate regularised, impulse capped, tag [F-3]
+};
+
+struct ContactParameters {
+  double penalty = 0.05;        ///< pressure per penetration [kN/mm^3]; > 0
+  double damping_ratio = 0.2;   ///< of a node's mass on its penalty spring [-]; >= 0
+  double friction = 0.2;        ///< Coulomb coefficient [-]; >= 0
+  Friction friction_model = Friction::elastic_stick;
+  double stick_ratio = 0.5;     ///< tangential over normal penalty [-]; > 0 (elastic stick)
+  double slip_speed = 0.04;     ///< speed of full friction [mm/ms]; > 0 (viscous)
+  bool culling = true;          ///< skip batches of nodes that cannot have reached the tool
+};
+
+inline void validate(const ContactParameters& p, const std::string& prefix = "contact") {
+  require_positive(prefix + ".penalty", p.penalty, "kN/mm^3");
+  require_non_negative(prefix + ".damping_ratio", p.damping_ratio, "-");
+  require_non_negative(prefix + ".friction", p.friction, "-");
+  require_positive(prefix + ".stick_ratio", p.stick_ratio, "-");
+  require_positive(prefix + ".slip_speed", p.slip_speed, "mm/ms");
+}
+
+/// How a tool moves along z: prescribed, or free under a given force.
+struct ToolMotion {
+  std::function<double(double)> position;  ///< z(t) [mm]; prescribed when set
+  std::function<double(double)> force;     ///< applied F_z(t) [kN] of a free tool
+  double mass = 0;                         ///< of a free tool [kg]
+  double damping_rate = 0;                 ///< of a free tool [1/ms]
+
+  static ToolMotion fixed() {
+    return {[](double) { return 0.0; }, {}, 0, 0};
+  }
+  static ToolMotion prescribed(std::function<double(double)> z) { return {std::move(z), {}, 0, 0}; }
+  static ToolMotion free_under(std::function<double(double)> F, double mass, double damping_rate) {
+    require_positive("tool.mass", mass, "kg");
+    require_non_negative("tool.damping_rate", damping_rate, "1/ms");
+    return {{}, std::move(F), mass, damping_rate};
+  }
+  [[nodiscard]] bool is_free() const { return !position; }
+};
+
+/// Work done up to now [kN mm]; each entry counts in one place of the energy ledger only.
+struct ContactWork {
+  double tool = 0;      ///< of a prescribed tool on the fabric, or of the force applied to a free one
+  double friction = 0;  ///< taken by friction (its elastic stick included)
+  double damping = 0;   ///< taken by contact and tool damping
+};
+
+/// The tool as the time integration sees it.
+template <class R>
+class ToolContact {
+ public:
+  virtual ~ToolContact() = default;
+
+  explicit ToolContact(ToolMotion motion) : motion_(std::move(motion)) {
+    if (!motion_.is_free()) z_ = motion_.position(0);
+  }
+
+  /// Contact forces at t_n: adds them to state.f and keeps them for the bookkeeping.
+  /// @param travel upper bound of the distance any node or this tool has moved since the start
+  virtual void add_forces(NodalState<R>& state, double dt, double travel) = 0;
+  /// Books the work of the step's forces with the velocities a v_centre + b v, over a time `weight`.
+  virtual void book(const NodalState<R>& state, double a, double b, double weight) = 0;
+  [[nodiscard]] virtual double stored_energy() const = 0;
+  /// Contact pressure of every node [kN/mm^2].
+  virtual void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const = 0;
+  /// Bound of this contact's own squared frequency on the fabric's nodes [1/ms^2].
+  [[nodiscard]] virtual double omega_squared(double areal_mass) const = 0;
+
+  /// Moves the tool from t_n to t_{n+1}; after add_forces, before book.
+  /// @return distance moved [mm]
+  double advance(double t, double dt) {
+    v_minus_ = v_plus_;
+    if (motion_.is_free()) {
+      applied_ = motion_.force(t);
+      const double a = motion_.damping_rate;
+      v_plus_ = ((1 - a * dt / 2) * v_minus_ + dt * (applied_ - force_.z) / motion_.mass) /
+                (1 + a * dt / 2);
+      z_ += dt * v_plus_;
+    } else {
+      const double z = motion_.position(t + dt);
+      v_plus_ = (z - z_) / dt;
+      z_ = z;
+    }
+    return std::abs(v_plus_) * dt;
+  }
+
+  [[nodiscard]] double position() const { return z_; }
+  [[nodiscard]] const ContactWork& work() const { return work_; }
+  /// Kinetic energy of a free tool at t_n, as v_{n-1/2} v_{n+1/2} m/2; after advance.
+  [[nodiscard]] double kinetic_energy() const { return motion_.mass * v_minus_ * v_plus_ / 2; }
+  /// Sum of the forces on the fabric at t_n [kN].
+  [[nodiscard]] const Vec3<double>& force_on_fabric() const { return force_; }
+
+ protected:
+  /// Tool velocity that goes with the node velocities a v_centre + b v (book).
+  [[nodiscard]] double velocity(double a, double b) const {
+    return a * (v_minus_ + v_plus_) / 2 + b * v_plus_;
+  }
+  /// Work at the tool itself.
+  void book_tool(double a, double b, double weight) {
+    const double v = velocity(a, b);
+    if (motion_.is_free()) {
+      work_.tool += applied_ * v * weight;
+      work_.damping +=
+          motion_.mass * motion_.damping_rate * (v_minus_ + v_plus_) / 2 * v * weight;
+    } else {
+      work_.tool += force_.z * v * weight;
+    }
+  }
+
+  ToolMotion motion_;
+  ContactWork work_;
+  double z_ = 0, v_minus_ = 0, v_plus_ = 0, applied_ = 0;
+  Vec3<double> force_{};
+};
+
+/// Contact with a tool of a given shape. T is the pack the sweep runs on.
+template <class T, class Shape>
+  requires Surface<Shape, T>
+class RigidToolContact final : public ToolContact<real_t<T>> {
+ public:
+  using R = real_t<T>;
+  using Base = ToolContact<R>;
+  static constexpr int lanes = lanes_v<T>;
+
+  /// @param nodes number of nodes of the fabric
+  RigidToolContact(Shape shape, ToolMotion motion, const ContactParameters& parameters, int nodes)
+      : Base(std::move(motion)),
+        shape_(std::move(shape)),
+        parameters_(parameters),
+        batches_((nodes + lanes - 1) / lanes),
+        stick_(nodes),
+        friction_(nodes),
+        damping_(nodes),
+        normal_(padded(nodes)),
+        safe_until_(batches_, 0.0),
+        active_(batches_, 0) {
+    validate(parameters);
+  }
+
+  void add_forces(NodalState<R>& state, double dt, double travel) override {
+    const T kp(static_cast<R>(parameters_.penalty)), zeta2(R(2 * parameters_.damping_ratio));
+    const T mu(static_cast<R>(parameters_.friction));
+    const T kt_ratio(static_cast<R>(parameters_.stick_ratio));
+    const T step(static_cast<R>(started_ ? dt : 0.0));  // no slip has happened before t = 0
+    const T half_over_dt(static_cast<R>(0.5 / dt));
+    const T slip(static_cast<R>(parameters_.slip_speed));
+    const T tool_z(static_cast<R>(this->z_)), tool_v(static_cast<R>(this->v_plus_));
+    const bool sticks = parameters_.friction_model == Friction::elastic_stick;
+    const T zero(R(0)), tiny(std::numeric_limits<R>::min());
+    Vec3<double> sum{};
+    stored_ = 0;
+    for (int b = 0; b < batches_; ++b) {
+      if (parameters_.culling && travel < safe_until_[b]) continue;
+      const int n = b * lanes;
+      const T area = T::load(state.area.data() + n);
+      Vec3<T> p = load<T>(state.x, n);
+      p.z = p.z - tool_z;
+      const SurfaceGap<T> at = shape_.gap(p);
+      const auto touching = (at.gap < zero) && (area > zero);
+      if (!any(touching)) {
+        const T clearance = select(area > zero, at.clearance, T(std::numeric_limits<R>::max()));
+        // `travel` grows by what node and tool move together: it must use up the clearance first.
+        safe_until_[b] = travel + static_cast<double>(-lane_maximum(-clearance));
+        if (active_[b]) release(n, b);
+        continue;
+      }
+      active_[b] = 1;
+      const T m = T::load(state.mass.data() + n);
+      const Vec3<T> v_half = load<T>(state.v, n);
+      const Vec3<T> v_now = state.predicted_velocity(v_half, load<T>(state.v_centre, n));
+      const T penetration = select(touching, -at.gap, zero);
+      const T k = kp * area;
+      const T elastic = k * penetration;
+
+      // Normal damping never pulls: the total stays a pressure.
+      using std::sqrt;
+      const T closing = -(dot(v_now, at.normal) - tool_v * at.normal.z);
+      const T viscous = select(touching, maximum(zeta2 * sqrt(k * m) * closing, -elastic), zero);
+      const T pressure = elastic + viscous;
+
+      Vec3<T> slip_rate = v_half;
+      slip_rate.z = slip_rate.z - tool_v;
+      slip_rate = slip_rate - dot(slip_rate, at.normal) * at.normal;
+      Vec3<T> t, xi = load<T>(stick_, n);
+      if (sticks) {  // [F-2]
+        const T kt = kt_ratio * k;
+        xi = xi + step * slip_rate;
+        xi = xi - dot(xi, at.normal) * at.normal;
+        const T c = minimum(zeta2 * sqrt(kt * m), m * half_over_dt);
+        t = T(R(-1)) * (kt * xi + c * slip_rate);
+        const T size = sqrt(dot(t, t));
+        const T limit = mu * pressure;
+        const T scale = select(size > limit, limit / maximum(size, tiny), T(R(1)));
+        t = select_lanes(touching, scale * t);
+        const auto slips = (size > limit) && touching;
+        const T inv_kt = T(R(-1)) / maximum(kt, tiny);
+        xi = {select(slips, inv_kt * t.x, xi.x), select(slips, inv_kt * t.y, xi.y),
+              select(slips, inv_kt * t.z, xi.z)};
+        store(stick_, n, select_lanes(touching, xi));
+      } else {  // [F-3]
+        const T speed = sqrt(dot(slip_rate, slip_rate));
+        const T c = minimum(mu * pressure / maximum(speed, slip), m * half_over_dt);
+        t = select_lanes(touching, (zero - c) * slip_rate);
+      }
+
+      const Vec3<T> damping = viscous * at.normal;
+      const Vec3<T> force = pressure * at.normal + t;
+      store(state.f, n, load<T>(state.f, n) + force);
+      store(friction_, n, t);
+      store(damping_, n, damping);
+      pressure.store(normal_.data() + n);
+      sum.x += static_cast<double>(lane_sum(force.x));
+      sum.y += static_cast<double>(lane_sum(force.y));
+      sum.z += static_cast<double>(lane_sum(force.z));
+      stored_ += 0.5 * static_cast<double>(lane_sum(elastic * penetration));
+    }
+    this->force_ = sum;
+    started_ = true;
+  }
+
+  void book(const NodalState<R>& state, double a, double b, double weight) override {
+    const T ta(static_cast<R>(a)), tb(static_cast<R>(b));
+    const T tool_v(static_cast<R>(this->velocity(a, b)));
+    double friction = 0, damping = 0;
+    for (int k = 0; k < batches_; ++k) {
+      if (!active_[k]) continue;
+      const int n = k * lanes;
+      Vec3<T> v = ta * load<T>(state.v_centre, n) + tb * load<T>(state.v, n);
+      v.z = v.z - tool_v;
+      friction -= static_cast<double>(lane_sum(dot(load<T>(friction_, n), v)));
+      damping -= static_cast<double>(lane_sum(dot(load<T>(damping_, n), v)));
+    }
+    this->work_.friction += friction * weight;
+    this->work_.damping += damping * weight;
+    this->book_tool(a, b, weight);
+  }
+
+  [[nodiscard]] double stored_energy() const override { return stored_; }
+
+  void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const override {
+    for (int n = 0; n < state.node_count; ++n)
+      pressure[n] += static_cast<double>(normal_[n]) / static_cast<double>(state.area[n]);
+  }
+
+  [[nodiscard]] double omega_squared(double areal_mass) const override {
+    return parameters_.penalty * std::max(1.0, parameters_.stick_ratio) / areal_mass;
+  }
+
+  [[nodiscard]] const Shape& shape() const { return shape_; }
+
+ private:
+  template <class Mask>
+  CROSSBEAM_INLINE static Vec3<T> select_lanes(const Mask& mask, const Vec3<T>& a) {
+    const T zero(R(0));
+    return {select(mask, a.x, zero), select(mask, a.y, zero), select(mask, a.z, zero)};
+  }
+
+  /// A batch that lost contact forgets its stick and its forces.
+  void release(int n, int b) {
+    const T zero(R(0));
+    const Vec3<T> none{zero, zero, zero};
+    store(stick_, n, none);
+    store(friction_, n, none);
+    store(damping_, n, none);
+    zero.store(normal_.data() + n);
+    active_[b] = 0;
+  }
+
+  Shape shape_;
+  ContactParameters parameters_;
+  int batches_;
+  NodeVectors<R> stick_;     // elastic slip xi [mm]
+  NodeVectors<R> friction_;  // force on the node [kN]
+  NodeVectors<R> damping_;   // force on the node [kN]
+  AlignedArray<R> normal_;   // normal force on the node, pressure positive [kN]
+  std::vector<double> safe_until_;
+  std::vector<char> active_;
+  double stored_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace crossbeam

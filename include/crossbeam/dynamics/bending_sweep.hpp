@@ -1,0 +1,233 @@
+#pragma once
+/// @file
+/// Bending of the yarns along the fibre lines of a mesh, rotation-free; the yarns' natural state is
+/// straight. Theory: docs/theory/bending.md.
+
+#include "crossbeam/dynamics/force_block.hpp"
+#include "crossbeam/element/bending.hpp"
+#include "crossbeam/mesh/batches.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace crossbeam {
+
+struct BendingStiffness {
+  double warp = 0;  ///< D1 per unit width [kN mm]; >= 0
+  double weft = 0;  ///< D2 per unit width [kN mm]; >= 0
+};
+
+/// @tparam T pack
+template <class T>
+class BendingSweep final : public ForceBlock<real_t<T>> {
+ public:
+  using R = real_t<T>;
+  static constexpr int lanes = lanes_v<T>;
+
+  /// @param planes mirror planes: a yarn that crosses one continues into its mirror image, tag [B-4]
+  template <int Corners>
+  BendingSweep(const Mesh<Corners>& mesh, const BendingStiffness& stiffness, double areal_mass,
+               const SymmetryPlanes& planes = {}) {
+    require_positive("areal_mass", areal_mass, "kg/mm^2");
+    const double D[2] = {require_non_negative("bending.warp", stiffness.warp, "kN mm"),
+                         require_non_negative("bending.weft", stiffness.weft, "kN mm")};
+    const std::vector<double> area = mesh.tributary_areas();
+    std::vector<double> row_sum(mesh.node_count, 0.0);
+    std::map<Key, std::vector<Stencil>> sorted;
+    const std::vector<Surroundings> around = surroundings(mesh);
+    for (int n = 0; n < mesh.node_count; ++n)
+      for (int family = 0; family < 2; ++family) {
+        if (!(D[family] > 0)) continue;
+        const auto weights =
+            second_difference(label(n, 0), ring(mesh, around[n], n, family, planes));
+        if (weights.empty()) continue;
+        Stencil stencil;
+        stencil.stiffness = D[family] * area[n];
+        Key key{weights.size() > 3, {}};
+        for (const auto& w : weights) {
+          stencil.node.push_back(w.id / 4);
+          stencil.weight.push_back(w.weight);
+          key.second.push_back(w.id % 4);
+        }
+        double sum = 0;
+        for (double w : stencil.weight) sum += std::abs(w);
+        for (std::size_t k = 0; k < stencil.node.size(); ++k)
+          row_sum[stencil.node[k]] += stencil.stiffness * std::abs(stencil.weight[k]) * sum;
+        sorted[key].push_back(std::move(stencil));
+        ++count_;
+      }
+    for (const auto& [key, stencils] : sorted) {
+      if (key.second.size() <= 3)
+        short_.emplace_back(key.second, stencils);
+      else
+        long_.emplace_back(key.second, stencils);
+    }
+    for (int n = 0; n < mesh.node_count; ++n)  // Gershgorin
+      omega_squared_ = std::max(omega_squared_, row_sum[n] / (area[n] * areal_mass));
+  }
+
+  void add_forces(NodalState<R>& state, double) override {
+    for (const auto& group : short_) group.add_forces(state);
+    for (const auto& group : long_) group.add_forces(state);
+  }
+  void add_energy(const NodalState<R>& state, InternalEnergy& energy) const override {
+    for (const auto& group : short_) energy.bending += group.energy(state);
+    for (const auto& group : long_) energy.bending += group.energy(state);
+  }
+  [[nodiscard]] double omega_squared() const override { return omega_squared_; }
+
+  /// Curvature stencils in the block; at most two per node.
+  [[nodiscard]] int stencils() const { return count_; }
+
+ private:
+  struct Stencil {
+    std::vector<int> node;
+    std::vector<double> weight;
+    double stiffness = 0;  // D A [kN mm^3]
+  };
+  // Long or short, and the mirrorings of its columns: bit 0 at x = 0, bit 1 at y = 0.
+  using Key = std::pair<bool, std::vector<int>>;
+  static int label(int node, int mirror) { return node * 4 + mirror; }
+
+  struct Surroundings {
+    std::set<int> nodes;
+    Vec3<double> warp{}, weft{}, normal{};
+  };
+
+  template <int Corners>
+  static std::vector<Surroundings> surroundings(const Mesh<Corners>& mesh) {
+    std::vector<Surroundings> out(mesh.node_count);
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const Vec3<double> normal = cross(mesh.fibres[e].warp, mesh.fibres[e].weft);
+      for (int n : mesh.elements[e]) {
+        out[n].warp = out[n].warp + mesh.fibres[e].warp;
+        out[n].weft = out[n].weft + mesh.fibres[e].weft;
+        out[n].normal = out[n].normal + normal;
+        for (int m : mesh.elements[e])
+          if (m != n) out[n].nodes.insert(m);
+      }
+    }
+    return out;
+  }
+
+  /// Neighbours of a node in the frame of one fibre family; beyond a mirror plane, their images.
+  template <int Corners>
+  static std::vector<StencilNeighbour> ring(const Mesh<Corners>& mesh, const Surroundings& around,
+                                            int n, int family, const SymmetryPlanes& planes) {
+    const Vec3<double> X = mesh.nodes.get(n);
+    const Vec3<double> F = family == 0 ? around.warp : around.weft;
+    const Vec3<double> along = (1 / detail::norm(F)) * F;
+    const Vec3<double> sideways = cross(around.normal, along);
+    const Vec3<double> across = (1 / detail::norm(sideways)) * sideways;
+    double size = 0;
+    for (int m : around.nodes) size = std::max(size, detail::norm(mesh.nodes.get(m) - X));
+    const bool on_x = planes.x && std::abs(X.x) < 1e-9 * size;
+    const bool on_y = planes.y && std::abs(X.y) < 1e-9 * size;
+    std::vector<StencilNeighbour> out;
+    for (int m : around.nodes)
+      for (int mirror = 0; mirror < 4; ++mirror) {
+        if (((mirror & 1) && !on_x) || ((mirror & 2) && !on_y)) continue;
+        Vec3<double> Y = mesh.nodes.get(m);
+        // The image of a node on the plane is the node itself.
+        if ((mirror & 1) && std::abs(Y.x) < 1e-9 * size) continue;
+        if ((mirror & 2) && std::abs(Y.y) < 1e-9 * size) continue;
+        if (mirror & 1) Y.x = -Y.x;
+        if (mirror & 2) Y.y = -Y.y;
+        const Vec3<double> d = Y - X;
+        out.push_back({label(m, mirror), dot(d, along), dot(d, across)});
+      }
+    return out;
+  }
+
+  /// Stencils of the same mirror pattern; Columns of them, unused columns with weight zero.
+  template <int Columns>
+  class Group {
+   public:
+    Group(const std::vector<int>& mirrors, const std::vector<Stencil>& stencils) {
+      used_ = static_cast<int>(mirrors.size());
+      CROSSBEAM_EXPECTS(used_ <= Columns);
+      for (int k = 0; k < used_; ++k) {
+        sign_x_[k] = (mirrors[k] & 1) ? R(-1) : R(1);
+        sign_y_[k] = (mirrors[k] & 2) ? R(-1) : R(1);
+        mirrored_ = mirrored_ || mirrors[k] != 0;
+      }
+      std::vector<std::array<int, Columns>> tuples;
+      for (const Stencil& s : stencils) {
+        std::array<int, Columns> t;
+        for (int k = 0; k < Columns; ++k) t[k] = s.node[std::min(k, used_ - 1)];
+        tuples.push_back(t);
+      }
+      batches_ = IndexBatches<Columns, T>(tuples);
+      constants_ = LaneArray<T>(batches_.size(), Columns + 1);
+      for (int b = 0; b < batches_.size(); ++b)
+        for (int l = 0; l < batches_[b].active; ++l) {  // idle lanes keep a stiffness of zero
+          const Stencil& s = stencils[batches_.tuple(b, l)];
+          for (int k = 0; k < used_; ++k) constants_.at(b, k, l) = R(s.weight[k]);
+          constants_.at(b, Columns, l) = R(s.stiffness);
+        }
+    }
+
+    void add_forces(NodalState<R>& state) const {
+      if (mirrored_)
+        sweep<true>(state);
+      else
+        sweep<false>(state);
+    }
+
+    [[nodiscard]] double energy(const NodalState<R>& state) const {
+      double sum = 0;
+      for (int b = 0; b < batches_.size(); ++b) {
+        const Vec3<T> kappa = curvature<true>(state, b);
+        sum += 0.5 * static_cast<double>(
+                         lane_sum(constants_.load(b, Columns) * dot(kappa, kappa)));
+      }
+      return sum;
+    }
+
+   private:
+    template <bool Mirrored>
+    CROSSBEAM_INLINE Vec3<T> signed_copy(const Vec3<T>& v, int k) const {
+      if constexpr (Mirrored)
+        return {T(sign_x_[k]) * v.x, T(sign_y_[k]) * v.y, v.z};
+      else
+        return v;
+    }
+
+    template <bool Mirrored>
+    CROSSBEAM_INLINE Vec3<T> curvature(const NodalState<R>& state, int b) const {
+      const T zero(R(0));
+      Vec3<T> kappa{zero, zero, zero};
+      for (int k = 0; k < used_; ++k)
+        kappa = kappa + constants_.load(b, k) *
+                            signed_copy<Mirrored>(batches_.gather(state.x, batches_[b], k), k);
+      return kappa;
+    }
+
+    template <bool Mirrored>
+    void sweep(NodalState<R>& state) const {
+      for (int b = 0; b < batches_.size(); ++b) {
+        const Vec3<T> moment =
+            constants_.load(b, Columns) * curvature<Mirrored>(state, b);
+        for (int k = 0; k < used_; ++k)
+          batches_.subtract(state.f, batches_[b], k,
+                            constants_.load(b, k) * signed_copy<Mirrored>(moment, k));
+      }
+    }
+
+    int used_ = 0;
+    bool mirrored_ = false;
+    std::array<R, Columns> sign_x_{}, sign_y_{};
+    IndexBatches<Columns, T> batches_;
+    LaneArray<T> constants_;
+  };
+
+  static constexpr int most = 32;  // nodes of an oblique stencil: the ring and its images
+  std::vector<Group<3>> short_;
+  std::vector<Group<most>> long_;
+  double omega_squared_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace crossbeam

@@ -1,0 +1,210 @@
+#pragma once
+/// @file
+/// Explicit dynamics: the central-difference (leap-frog) scheme with centred damping, a constant
+/// proven bound of the critical step, and the energy ledger. Theory: docs/theory/dynamics.md.
+
+#include "crossbeam/contact/tool_contact.hpp"
+#include "crossbeam/dynamics/force_block.hpp"
+#include "crossbeam/dynamics/ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crossbeam {
+
+/// @tparam T pack; one lane per node in the update
+template <class T>
+class CentralDifference {
+ public:
+  using R = real_t<T>;
+  static constexpr int lanes = lanes_v<T>;
+
+  /// @param areal_mass   [kg/mm^2]
+  /// @param mass_damping alpha of the force -alpha m v [1/ms]; >= 0
+  CentralDifference(NodalState<R> state, double areal_mass, double mass_damping = 0)
+      : state_(std::move(state)),
+        areal_mass_(require_positive("areal_mass", areal_mass, "kg/mm^2")),
+        mass_damping_(require_non_negative("mass_damping", mass_damping, "1/ms")) {}
+
+  void add(std::unique_ptr<ForceBlock<R>> block) { blocks_.push_back(std::move(block)); }
+  void add(std::unique_ptr<ToolContact<R>> tool) { tools_.push_back(std::move(tool)); }
+
+  /// Lower bound of the critical step from the blocks' constant bounds and the contact penalties
+  /// [ms], tag [D-3]. @throws RunError for a model without stiffness.
+  [[nodiscard]] double critical_step() const {
+    double omega_squared = 0, damping = 0;
+    for (const auto& b : blocks_) {
+      omega_squared += b->omega_squared();
+      damping = std::max(damping, b->damping_ratio());
+    }
+    for (const auto& t : tools_) omega_squared += t->omega_squared(areal_mass_);
+    if (!(omega_squared > 0)) throw RunError("no stiffness in the model: no critical step");
+    return 2 / std::sqrt(omega_squared) * (std::sqrt(1 + damping * damping) - damping);
+  }
+
+  /// Starts the scheme from the state's positions and velocities (read as v at t = 0), with the step
+  /// dt. Call once, after all blocks and tools were added.
+  void start(double dt) {
+    dt_ = require_positive("time_step", dt, "ms");
+    time_ = 0;
+    state_.v_centre = state_.v;
+  }
+
+  /// One step: forces at t_n, velocities to t_{n+1/2}, positions to t_{n+1}.
+  /// @param sample ledger to fill with the energies at t_n, or nullptr
+  /// @throws RunError when a node moves faster than `speed_limit` or not at all a number
+  void step(EnergyLedger* sample = nullptr) {
+    CROSSBEAM_EXPECTS(dt_ > 0);
+    compute_forces();
+    if (steps_ == 0) begin();
+    EnergyLedger ledger;
+    if (sample) {
+      for (const auto& b : blocks_) b->add_energy(state_, ledger.internal);
+      for (const auto& t : tools_) ledger.contact += t->stored_energy();
+    }
+    const double fastest = move();
+    double tool_travel = 0;
+    for (const auto& t : tools_) tool_travel = std::max(tool_travel, t->advance(time_, dt_));
+    travel_ += fastest * dt_ + tool_travel;
+    if (sample) {
+      // First half of the step's work, the energies at t_n, then the second half.
+      book(2, -1, dt_ / 2);
+      const Totals now = totals();
+      ledger.time = time_;
+      ledger.kinetic = now.kinetic;
+      ledger.friction = now.friction;
+      ledger.contact_damping = now.contact_damping;
+      ledger.mass_damping = mass_damping_work_;
+      ledger.external = now.external;
+      ledger.initial = initial_;
+      *sample = ledger;
+      book(0, 1, dt_ / 2);
+    } else {
+      book(1, 0, dt_);
+    }
+    ++steps_;
+    time_ = static_cast<double>(steps_) * dt_;
+    if (!(fastest <= speed_limit_))
+      throw RunError("time " + detail::to_text(time_) + " ms, step " + std::to_string(steps_) +
+                     ": a node moves at " + detail::to_text(fastest) + " mm/ms, above the limit of " +
+                     detail::to_text(speed_limit_) +
+                     " mm/ms. The run is unstable: use a smaller time step (critical step bound " +
+                     detail::to_text(critical_step()) + " ms, step " + detail::to_text(dt_) + " ms)");
+  }
+
+  /// Speeds above this stop the run [mm/ms]; for instance the yarns' wave speed.
+  void set_speed_limit(double limit) {
+    speed_limit_ = require_positive("speed_limit", limit, "mm/ms");
+  }
+
+  [[nodiscard]] double time() const { return time_; }
+  [[nodiscard]] double time_step() const { return dt_; }
+  [[nodiscard]] long long steps() const { return steps_; }
+  [[nodiscard]] const NodalState<R>& state() const { return state_; }
+  [[nodiscard]] NodalState<R>& state() { return state_; }
+  [[nodiscard]] const std::vector<std::unique_ptr<ForceBlock<R>>>& blocks() const { return blocks_; }
+  [[nodiscard]] const std::vector<std::unique_ptr<ToolContact<R>>>& tools() const { return tools_; }
+
+ private:
+  struct Totals {
+    double kinetic = 0, friction = 0, contact_damping = 0, external = 0;
+  };
+
+  void compute_forces() {
+    std::fill(state_.f.x.begin(), state_.f.x.end(), R(0));
+    std::fill(state_.f.y.begin(), state_.f.y.end(), R(0));
+    std::fill(state_.f.z.begin(), state_.f.z.end(), R(0));
+    for (const auto& b : blocks_) b->add_forces(state_, dt_);
+    for (const auto& t : tools_) t->add_forces(state_, dt_, travel_);
+  }
+
+  /// v_{-1/2} = v_0 - dt/2 a_0 keeps the first step of second order; and the energy at the start.
+  void begin() {
+    InternalEnergy internal;
+    for (const auto& b : blocks_) b->add_energy(state_, internal);
+    initial_ = internal.stored();
+    for (const auto& t : tools_) initial_ += t->stored_energy();
+    const T half(static_cast<R>(-dt_ / 2)), alpha(static_cast<R>(mass_damping_));
+    for (int n = 0; n < state_.node_count; n += lanes) {
+      const Vec3<T> v = constrained(n, load<T>(state_.v, n));
+      initial_ += 0.5 * static_cast<double>(
+                            lane_sum(T::load(state_.mass.data() + n) * dot(v, v)));
+      store(state_.v, n, constrained(n, v + half * (acceleration(n) - alpha * v)));
+    }
+  }
+
+  CROSSBEAM_INLINE Vec3<T> acceleration(int n) const {
+    return T::load(state_.inverse_mass.data() + n) * load<T>(state_.f, n);
+  }
+  CROSSBEAM_INLINE Vec3<T> constrained(int n, const Vec3<T>& v) const {
+    const Vec3<T> free = load<T>(state_.free, n);
+    return {v.x * free.x, v.y * free.y, v.z * free.z};
+  }
+
+  /// v_{n+1/2} and x_{n+1}, tag [D-1]; returns the largest speed.
+  double move() {
+    const double a = mass_damping_ * dt_ / 2;
+    const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
+    const T dt(static_cast<R>(dt_)), half(R(0.5));
+    T fastest(R(0)), sum(R(0));
+    for (int n = 0; n < state_.node_count; n += lanes) {
+      const Vec3<T> before = load<T>(state_.v, n);
+      const Vec3<T> v = constrained(n, keep * before + push * acceleration(n));
+      store(state_.v, n, v);
+      store(state_.v_centre, n, half * (before + v));
+      store(state_.x, n, load<T>(state_.x, n) + dt * v);
+      const T speed_squared = dot(v, v);
+      fastest = maximum(fastest, speed_squared);
+      sum = sum + speed_squared;  // a NaN or an overflow stays in the sum
+    }
+    const double total = static_cast<double>(lane_sum(sum));
+    return std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
+  }
+
+  /// Work of the step's forces with the velocities a v_n + b v_{n+1/2} over a time, tag [D-4].
+  void book(double a, double b, double weight) {
+    for (const auto& t : tools_) t->book(state_, a, b, weight);
+    if (mass_damping_ > 0) {
+      const T ta(static_cast<R>(a)), tb(static_cast<R>(b));
+      double sum = 0;
+      for (int n = 0; n < state_.node_count; n += lanes) {
+        const Vec3<T> centre = load<T>(state_.v_centre, n);
+        const Vec3<T> v = ta * centre + tb * load<T>(state_.v, n);
+        sum += static_cast<double>(lane_sum(T::load(state_.mass.data() + n) * dot(centre, v)));
+      }
+      mass_damping_work_ += mass_damping_ * sum * weight;
+    }
+  }
+
+  /// Kinetic energy at t_n as m v_{n-1/2} v_{n+1/2} / 2, and the tools' works.
+  [[nodiscard]] Totals totals() const {
+    Totals out;
+    const T two(R(2));
+    for (int n = 0; n < state_.node_count; n += lanes) {
+      const Vec3<T> v = load<T>(state_.v, n);
+      const Vec3<T> before = two * load<T>(state_.v_centre, n) - v;
+      out.kinetic +=
+          0.5 * static_cast<double>(lane_sum(T::load(state_.mass.data() + n) * dot(before, v)));
+    }
+    for (const auto& t : tools_) {
+      out.kinetic += t->kinetic_energy();
+      out.friction += t->work().friction;
+      out.contact_damping += t->work().damping;
+      out.external += t->work().tool;
+    }
+    return out;
+  }
+
+  NodalState<R> state_;
+  double areal_mass_, mass_damping_;
+  std::vector<std::unique_ptr<ForceBlock<R>>> blocks_;
+  std::vector<std::unique_ptr<ToolContact<R>>> tools_;
+  double dt_ = 0, time_ = 0, travel_ = 0, speed_limit_ = 1e6;
+  double mass_damping_work_ = 0, initial_ = 0;
+  long long steps_ = 0;
+};
+
+}  // namespace crossbeam

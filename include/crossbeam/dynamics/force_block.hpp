@@ -1,0 +1,54 @@
+#pragma once
+/// @file
+/// What the time integration asks of a group of elements or stencils. A scene is a list of blocks: what
+/// it does not have costs nothing.
+
+#include "crossbeam/mesh/nodal_state.hpp"
+
+#include <string>
+#include <vector>
+
+namespace crossbeam {
+
+/// Stored energies of the internal forces, and the work that viscosity took [kN mm].
+struct InternalEnergy {
+  double yarn = 0, shear = 0, bending = 0, hourglass = 0;
+  double bulk_viscosity = 0;
+  [[nodiscard]] double stored() const { return yarn + shear + bending + hourglass; }
+};
+
+/// What one element looks like, averaged over its Gauss points: for output and checks.
+struct ElementSample {
+  double shear_angle = 0;                       ///< signed [rad]
+  double stretch[2] = {1, 1};                   ///< warp, weft [-]
+  double tension[2] = {0, 0};                   ///< per unit width [kN/mm]
+  double crimp_height[2] = {0, 0};              ///< H + w of the yarns [mm]
+  double contact_force = 0;                     ///< of the cell, pressure positive [kN]
+  bool slack = false;                           ///< the yarns do not touch
+  bool fallback = false;                        ///< second-order cell answered by the energy cell
+  double cell_correction = 0;                   ///< last Newton correction of the cell [mm]
+  Vec3<double> warp{}, weft{};                  ///< current unit directions
+};
+
+template <class R>
+class ForceBlock {
+ public:
+  virtual ~ForceBlock() = default;
+  /// Subtracts the internal forces at x_n from state.f.
+  virtual void add_forces(NodalState<R>& state, double dt) = 0;
+  /// Energies at x_n.
+  virtual void add_energy(const NodalState<R>& state, InternalEnergy& energy) const = 0;
+  /// Bound of the squared highest frequency of these forces on the lumped mass [1/ms^2]. Constant.
+  [[nodiscard]] virtual double omega_squared() const = 0;
+  /// Share by which viscous forces shorten the stable step: it is multiplied by
+  /// sqrt(1 + b^2) - b with this b.
+  [[nodiscard]] virtual double damping_ratio() const { return 0; }
+  /// State of every element of the block; empty for blocks without elements.
+  virtual void sample(const NodalState<R>&, std::vector<ElementSample>&) const {}
+  /// Gauss points evaluated in a step.
+  [[nodiscard]] virtual long long points() const { return 0; }
+  /// Gauss points answered by a fallback up to now.
+  [[nodiscard]] virtual long long fallbacks() const { return 0; }
+};
+
+}  // namespace crossbeam

@@ -1,0 +1,59 @@
+#pragma once
+/// @file
+/// From the relative vectors of an element to its generalised forces, by way of any membrane law and
+/// without forming a matrix (docs/theory/element.md, [E-3]). One template for scalars and packs.
+
+#include "crossbeam/element/coefficients.hpp"
+#include "crossbeam/law/woven_membrane.hpp"
+
+namespace crossbeam {
+
+/// The law a membrane element needs.
+template <class Law, class T>
+concept MembraneLaw = requires(const Law& law, const FibreStrain<T>& beta) {
+  typename Law::Real;
+  law.reference();
+  { law.stress(law.evaluate(beta)) } -> std::same_as<FibreStress<T>>;
+  law.stiffness_bound();
+};
+
+/// The fibre vectors of a Gauss point.
+template <int M, class T, int K>
+CROSSBEAM_INLINE Vec3<T> fibre_vector(const Vec3<T> (&D)[K], const T (&t)[M]) {
+  Vec3<T> f = t[0] * D[0];
+  for (int k = 1; k < M; ++k) f = f + t[k] * D[k];
+  return f;
+}
+
+/// Coefficients of one Gauss point, loaded into the lanes.
+template <class T, int M>
+struct PointLanes {
+  T t1[M], t2[M];
+  T weight;
+};
+
+/// Strain and state of a Gauss point.
+template <class T, int M, int K>
+struct PointKinematics {
+  Vec3<T> f1, f2;
+  template <class R>
+  CROSSBEAM_INLINE FibreStrain<T> strain(R reference_cosine) const {
+    return fibre_strain(f1, f2, reference_cosine);
+  }
+  CROSSBEAM_INLINE PointKinematics(const Vec3<T> (&D)[K], const PointLanes<T, M>& point)
+      : f1(fibre_vector<M>(D, point.t1)), f2(fibre_vector<M>(D, point.t2)) {}
+};
+
+/// Adds weight * (m^{ij} f_j) t_ik to the generalised forces R_k, the derivatives of the point's
+/// energy with respect to D_k.
+template <int M, class T, int K>
+CROSSBEAM_INLINE void add_point_forces(const PointKinematics<T, M, K>& kinematics,
+                                       const FibreStress<T>& m, const PointLanes<T, M>& point,
+                                       Vec3<T> (&R)[K]) {
+  const T a11 = point.weight * m.m11, a22 = point.weight * m.m22, a12 = point.weight * m.m12;
+  const Vec3<T> P1 = a11 * kinematics.f1 + a12 * kinematics.f2;
+  const Vec3<T> P2 = a12 * kinematics.f1 + a22 * kinematics.f2;
+  for (int k = 0; k < M; ++k) R[k] = R[k] + (point.t1[k] * P1 + point.t2[k] * P2);
+}
+
+}  // namespace crossbeam

@@ -1,0 +1,91 @@
+#pragma once
+/// @file
+/// The moving part of a model: positions, velocities, forces and masses of the nodes.
+
+#include "crossbeam/mesh/arrays.hpp"
+#include "crossbeam/mesh/mesh.hpp"
+
+#include <vector>
+
+namespace crossbeam {
+
+/// Which components of a node may move; a fixed node has none.
+struct NodeConstraint {
+  int node = 0;
+  bool fix_x = false, fix_y = false, fix_z = false;
+};
+
+/// State of the leap-frog scheme at step n. R is float or double.
+template <class R>
+struct NodalState {
+  int node_count = 0;
+  NodeVectors<R> x;        ///< positions x_n [mm]
+  NodeVectors<R> v;        ///< velocities v_{n-1/2} [mm/ms]
+  NodeVectors<R> v_centre; ///< velocities v_{n-1} = (v_{n-3/2} + v_{n-1/2})/2 [mm/ms]
+  NodeVectors<R> f;        ///< forces f_n [kN]
+  NodeVectors<R> free;     ///< 1 where a component may move, 0 where it is fixed
+  AlignedArray<R> mass;    ///< [kg]; 0 in the padding
+  AlignedArray<R> inverse_mass;  ///< [1/kg]; 0 in the padding
+  AlignedArray<R> area;    ///< tributary reference area [mm^2]; 0 in the padding
+
+  NodalState() = default;
+
+  /// @param areal_mass [kg/mm^2]; > 0
+  template <int Corners>
+  NodalState(const Mesh<Corners>& mesh, double areal_mass,
+             const std::vector<NodeConstraint>& constraints = {})
+      : node_count(mesh.node_count),
+        x(node_count),
+        v(node_count),
+        v_centre(node_count),
+        f(node_count),
+        free(node_count),
+        mass(padded(node_count)),
+        inverse_mass(padded(node_count)),
+        area(padded(node_count)) {
+    require_positive("areal_mass", areal_mass, "kg/mm^2");
+    const std::vector<double> A = mesh.tributary_areas();
+    for (int n = 0; n < node_count; ++n) {
+      if (!(A[n] > 0))
+        throw InputError("mesh.nodes[" + std::to_string(n) + "]", "no element", "",
+                         "every node belongs to an element");
+      const Vec3<double> X = mesh.nodes.get(n);
+      x.set(n, {R(X.x), R(X.y), R(X.z)});
+      free.set(n, {R(1), R(1), R(1)});
+      area[n] = R(A[n]);
+      mass[n] = R(A[n] * areal_mass);
+      inverse_mass[n] = R(1 / (A[n] * areal_mass));
+    }
+    for (const NodeConstraint& c : constraints) {
+      if (c.node < 0 || c.node >= node_count)
+        throw InputError("constraint.node", std::to_string(c.node), "",
+                         "0 to " + std::to_string(node_count - 1));
+      if (c.fix_x) free.x[c.node] = R(0);
+      if (c.fix_y) free.y[c.node] = R(0);
+      if (c.fix_z) free.z[c.node] = R(0);
+    }
+  }
+
+  /// Velocity predicted for t_n from v_{n-1/2} and the last acceleration, of second order.
+  template <class T>
+  CROSSBEAM_INLINE Vec3<T> predicted_velocity(const Vec3<T>& half, const Vec3<T>& centre) const {
+    return T(R(2)) * half - centre;
+  }
+};
+
+/// Constraints of the nodes on the mirror planes.
+template <int Corners>
+std::vector<NodeConstraint> symmetry_constraints(const Mesh<Corners>& mesh,
+                                                 const SymmetryPlanes& planes,
+                                                 double tolerance = 1e-9) {
+  std::vector<NodeConstraint> out;
+  for (int n = 0; n < mesh.node_count; ++n) {
+    const Vec3<double> X = mesh.nodes.get(n);
+    const bool on_x = planes.x && std::abs(X.x) <= tolerance;
+    const bool on_y = planes.y && std::abs(X.y) <= tolerance;
+    if (on_x || on_y) out.push_back({n, on_x, on_y, false});
+  }
+  return out;
+}
+
+}  // namespace crossbeam
