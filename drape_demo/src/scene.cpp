@@ -496,9 +496,15 @@ std::vector<std::string> field_names() {
 }
 
 std::string field_range(const std::string& field) {
+  const std::string unit = field_unit(field);
   for (const auto& entry : all_fields())
-    if (entry.name == field)
-      return (entry.unit.empty() || entry.unit == "-" ? "" : "[" + entry.unit + "] ") + entry.range;
+    if (entry.name == field) return (unit.empty() ? "" : "[" + unit + "] ") + entry.range;
+  return "";
+}
+
+std::string field_unit(const std::string& field) {
+  for (const auto& entry : all_fields())
+    if (entry.name == field) return entry.unit == "-" ? "" : entry.unit;
   return "";
 }
 

@@ -34,7 +34,10 @@ void set_field(DrapeCase& drape_case, const std::string& field, const std::strin
 /// The dotted names of all fields, in the order of the scene files.
 [[nodiscard]] std::vector<std::string> field_names();
 
-/// Unit and admissible range of a field for help texts: "[m/s] > 0 and <= 100".
+/// Unit and admissible range of a field for help texts: "[m/s] a number > 0 and <= 100".
 [[nodiscard]] std::string field_range(const std::string& field);
+
+/// Its unit alone; "" where it has none.
+[[nodiscard]] std::string field_unit(const std::string& field);
 
 }  // namespace crossbeam::drape
