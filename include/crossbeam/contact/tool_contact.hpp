@@ -41,15 +41,19 @@ struct ToolMotion {
   std::function<double(double)> force;     ///< applied F_z(t) [kN] of a free tool
   double mass = 0;                         ///< of a free tool [kg]
   double damping_rate = 0;                 ///< of a free tool [1/ms]
+  double start = 0;                        ///< z(0) of a free tool [mm]
 
   static ToolMotion fixed() {
-    return {[](double) { return 0.0; }, {}, 0, 0};
+    return {[](double) { return 0.0; }, {}, 0, 0, 0};
   }
-  static ToolMotion prescribed(std::function<double(double)> z) { return {std::move(z), {}, 0, 0}; }
-  static ToolMotion free_under(std::function<double(double)> F, double mass, double damping_rate) {
+  static ToolMotion prescribed(std::function<double(double)> z) {
+    return {std::move(z), {}, 0, 0, 0};
+  }
+  static ToolMotion free_under(std::function<double(double)> F, double mass, double damping_rate,
+                               double start = 0) {
     require_positive("tool.mass", mass, "kg");
     require_non_negative("tool.damping_rate", damping_rate, "1/ms");
-    return {{}, std::move(F), mass, damping_rate};
+    return {{}, std::move(F), mass, damping_rate, require_finite("tool.start", start, "mm")};
   }
   [[nodiscard]] bool is_free() const { return !position; }
 };
@@ -68,7 +72,7 @@ class ToolContact {
   virtual ~ToolContact() = default;
 
   explicit ToolContact(ToolMotion motion) : motion_(std::move(motion)) {
-    if (!motion_.is_free()) z_ = motion_.position(0);
+    z_ = motion_.is_free() ? motion_.start : motion_.position(0);
   }
 
   /// Contact forces at t_n: adds them to state.f and keeps them for the bookkeeping.

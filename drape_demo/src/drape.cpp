@@ -1,0 +1,391 @@
+#include "drape.hpp"
+
+#include "formed_part.hpp"
+
+#include "crossbeam/crossbeam.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <numbers>
+#include <optional>
+#include <random>
+
+namespace crossbeam::drape {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// CPU time of this thread [s].
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Punch travel: a cosine over the stroke, then held.
+struct PunchStroke {
+  double stroke, duration;
+  double operator()(double t) const {
+    return t >= duration ? stroke : stroke / 2 * (1 - std::cos(pi * t / duration));
+  }
+};
+
+/// A quarter drape in one precision: mesh, blocks, tools and the loop.
+template <class R>
+class QuarterDrape {
+ public:
+  using T = NativePack<R>;
+
+  explicit QuarterDrape(const DrapeCase& c)
+      : case_(c),
+        grid_{std::max(1, static_cast<int>(std::lround(c.blank.half_width / c.blank.element_size))),
+              std::max(1, static_cast<int>(std::lround(c.blank.half_length / c.blank.element_size))),
+              c.blank.half_width, c.blank.half_length},
+        mesh_(rectangle(c.blank.half_width, c.blank.half_length, grid_.nx, grid_.ny,
+                        c.blank.layout * pi / 180)),
+        punch_{c.process.stroke, c.process.stroke / c.process.speed},
+        integrator_(initial_state(), c.fabric.areal_mass, c.integration.mass_damping) {
+    add_membrane();
+    if (c.fabric.warp_bending_stiffness > 0 || c.fabric.weft_bending_stiffness > 0)
+      integrator_.add(std::make_unique<BendingSweep<T>>(
+          mesh_,
+          BendingStiffness{c.fabric.warp_bending_stiffness, c.fabric.weft_bending_stiffness},
+          c.fabric.areal_mass, symmetry_));
+    add_tools();
+    // Faster than sound in the yarns, nothing in this model moves.
+    const double bound = CrossedBeamCell<double>(c.fabric.cell).membrane_stiffness_bound();
+    integrator_.set_speed_limit(std::sqrt(bound / c.fabric.areal_mass));
+  }
+
+  DrapeResult run(const Progress& progress) {
+    const auto wall_start = std::chrono::steady_clock::now();
+    const double cpu_start = cpu_seconds();
+    const double dt = case_.integration.step_factor * integrator_.critical_step();
+    const double duration = punch_.duration * (1 + case_.process.hold);
+    const auto steps = static_cast<std::int64_t>(std::ceil(duration / dt));
+    const std::int64_t sample_every = std::max<std::int64_t>(1, steps / case_.output.ledger_samples);
+    const std::int64_t frame_every =
+        case_.output.frames > 0 ? std::max<std::int64_t>(1, steps / case_.output.frames) : steps + 1;
+    integrator_.start(dt);
+    for (std::int64_t n = 0; n < steps; ++n) {
+      const double stroke = punch_(integrator_.time());
+      if (n % frame_every == 0) result_.frames.push_back(frame(stroke));
+      if (n % 128 == 0)
+        progress.update(static_cast<double>(n) / static_cast<double>(steps), stroke);
+      if (n % sample_every == 0 || n + 1 == steps) {
+        EnergyLedger ledger;
+        integrator_.step(&ledger);
+        book(ledger, stroke);
+        check_elements(stroke);
+      } else {
+        integrator_.step();
+      }
+    }
+    result_.frames.push_back(frame(punch_(integrator_.time())));
+    progress.update(1.0, case_.process.stroke);
+    measure();
+    Cost& cost = result_.cost;
+    cost.steps = steps;
+    cost.element_steps = steps * mesh_.element_count();
+    cost.cpu_s = cpu_seconds() - cpu_start;
+    cost.wall_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
+    cost.ns_per_element_step = 1e9 * cost.cpu_s / static_cast<double>(cost.element_steps);
+    cost.time_step_ms = dt;
+    for (const auto& block : integrator_.blocks()) result_.cell_fallbacks += block->fallbacks();
+    return std::move(result_);
+  }
+
+ private:
+  NodalState<R> initial_state() const {
+    NodalState<R> state(mesh_, case_.fabric.areal_mass, symmetry_constraints(mesh_, symmetry_));
+    if (case_.blank.perturbation > 0) {
+      std::mt19937_64 random(case_.blank.seed);
+      // Spelled out, so that every standard library gives the same numbers.
+      const auto uniform = [&] {
+        return case_.blank.perturbation *
+               (static_cast<double>(random() >> 11) * 0x1.0p-52 - 1.0);
+      };
+      for (int n = 0; n < mesh_.node_count; ++n) {
+        const Vec3<double> X = mesh_.nodes.get(n);
+        const double dx = uniform(), dy = uniform(), dz = uniform();
+        state.x.set(n, {R(X.x + dx * static_cast<double>(state.free.x[n])),
+                        R(X.y + dy * static_cast<double>(state.free.y[n])), R(X.z + dz)});
+      }
+    }
+    return state;
+  }
+
+  void add_membrane() {
+    const FabricInput& fabric = case_.fabric;
+    if (fabric.formulation == CellFormulation::energy)
+      add_membrane_with(CrossedBeamCell<R>(fabric.cell.template cast<R>()));
+    else
+      add_membrane_with(SecondOrderCell<R>(fabric.cell.template cast<R>()));
+  }
+
+  template <class Cell>
+  void add_membrane_with(const Cell& cell) {
+    const ShearInput& shear = case_.fabric.shear;
+    const auto angle = FibreAngle<R>::right();
+    const auto real = [](const std::vector<double>& v) { return std::vector<R>(v.begin(), v.end()); };
+    switch (shear.kind) {
+      case ShearLawKind::constant:
+        return add_membrane_with(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure));
+      case ShearLawKind::polynomial:
+        return add_membrane_with(
+            cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle));
+      case ShearLawKind::tabulated:
+        return add_membrane_with(
+            cell, TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)),
+                                    angle));
+    }
+  }
+
+  template <class Cell, class Shear>
+  void add_membrane_with(const Cell& cell, const Shear& shear) {
+    const WovenMembrane<Cell, Shear> law(cell, shear, FibreAngle<R>::right(), YarnWidth::corrected,
+                                         SolverControl::fixed(case_.fabric.cell_sweeps));
+    const MembraneOptions options{case_.blank.hourglass_stiffness,
+                                  case_.integration.bulk_viscosity};
+    if (case_.blank.gauss_points == 1)
+      add_block<Quadrilateral<1>>(law, options);
+    else
+      add_block<Quadrilateral<4>>(law, options);
+  }
+
+  template <class Element, class Law>
+  void add_block(const Law& law, const MembraneOptions& options) {
+    integrator_.add(std::make_unique<MembraneSweep<T, Element, Law>>(
+        mesh_, law, case_.fabric.areal_mass, options));
+  }
+
+  /// Punch below, die above, holder ring below. The fabric's mid-surface starts on the die flange, at
+  /// z = 0; the tools' contact surfaces are theirs, moved by half the thickness.
+  void add_tools() {
+    const double half_thickness = case_.fabric.thickness / 2;
+    const double play = 5.0 / 3.0;  // between punch and die when closed, along the normal [mm]
+    ContactParameters contact;
+    contact.penalty = case_.contact.penalty;
+    contact.damping_ratio = case_.contact.damping_ratio;
+    contact.friction = case_.contact.friction;
+    contact.friction_model = case_.contact.friction_model == FrictionModel::elastic_stick
+                                 ? Friction::elastic_stick
+                                 : Friction::viscous;
+    contact.slip_speed = case_.contact.viscous_slip * case_.process.speed;
+    contact.culling = case_.contact.culling;
+
+    const double die_offset = play - half_thickness;
+    const auto surface = [&](double offset, Side side) {
+      const DoubleDome<double> exact({}, offset);
+      HeightTableGrid<R> grid{R(0), R(140), R(0), R(240), R(case_.contact.table_spacing), true, true};
+      return HeightSurface<HeightTable<R>>(HeightTable<R>(exact, grid), side);
+    };
+    const auto add = [&](auto shape, ToolMotion motion) {
+      integrator_.add(std::make_unique<RigidToolContact<T, decltype(shape)>>(
+          std::move(shape), std::move(motion), contact, mesh_.node_count));
+    };
+    // The punch's flange plane lies at z = stroke position - depth below the closed position.
+    const double closed = -die_offset, stroke = case_.process.stroke;
+    add(surface(half_thickness, Side::above),
+        ToolMotion::prescribed([=, p = punch_](double t) { return closed - stroke + p(t); }));
+    add(surface(die_offset, Side::below), ToolMotion::prescribed([=](double) { return closed; }));
+
+    const StadiumRing<R> ring({}, R(half_thickness));
+    const StadiumRing<double> plan;
+    double held_area = 0;
+    const std::vector<double> area = mesh_.tributary_areas();
+    for (int n = 0; n < mesh_.node_count; ++n) {
+      const Vec3<double> X = mesh_.nodes.get(n);
+      if (plan.gap(Vec3<double>{X.x, X.y, 0}).gap <= 1e-9) held_area += area[n];
+    }
+    const double quarter_mass = case_.process.holder_mass / 4;
+    const double ramp = case_.process.holder_ramp * punch_.duration;
+    const double rate = 2 * case_.process.holder_damping_ratio *
+                        std::sqrt(case_.contact.penalty * held_area / quarter_mass);
+    add(ring, ToolMotion::free_under(
+                  [=, F = case_.process.holder_force / 4](double t) {
+                    return ramp > 0 ? F * std::min(t / ramp, 1.0) : F;
+                  },
+                  quarter_mass, rate, -half_thickness));
+  }
+
+  std::vector<ElementSample> sample() const {
+    std::vector<ElementSample> samples;
+    for (const auto& block : integrator_.blocks()) block->sample(integrator_.state(), samples);
+    return samples;
+  }
+
+  void book(const EnergyLedger& ledger, double stroke) {
+    const auto& tools = integrator_.tools();
+    LedgerRow row;
+    row.time = ledger.time;
+    row.stroke = stroke;
+    row.punch_work = tools[0]->work().tool;
+    row.holder_work = tools[2]->work().tool;
+    row.yarn = ledger.internal.yarn;
+    row.shear = ledger.internal.shear;
+    row.bending = ledger.internal.bending;
+    row.hourglass = ledger.internal.hourglass;
+    row.contact = ledger.contact;
+    row.kinetic = ledger.kinetic;
+    row.friction = ledger.friction;
+    row.contact_damping = ledger.contact_damping;
+    row.mass_damping = ledger.mass_damping;
+    row.bulk_viscosity = ledger.internal.bulk_viscosity;
+    row.residual = ledger.residual();
+    result_.ledger.push_back(row);
+
+    // Below a thousandth of the blank's kinetic energy at punch speed nothing is worth a stop.
+    const double floor = 1e-3 * 0.5 * case_.fabric.areal_mass * case_.blank.half_width *
+                         case_.blank.half_length * case_.process.speed * case_.process.speed;
+    const double scale = std::abs(row.punch_work) + std::abs(row.holder_work) +
+                         ledger.internal.stored() + row.kinetic;
+    if (!(std::abs(row.residual) <= 0.05 * scale + floor))
+      throw RunError("stroke " + detail::to_text(stroke) +
+                     " mm: the energy ledger does not close: residual " +
+                     detail::to_text(row.residual) + " kN mm of a punch work of " +
+                     detail::to_text(row.punch_work) +
+                     " kN mm, admissible 5 %. Usual causes: a time step above the critical one, or "
+                     "a contact penalty too stiff for it");
+  }
+
+  void check_elements(double stroke) const {
+    const std::vector<ElementSample> samples = sample();
+    const double longest = case_.fabric.cell.contact_length;
+    for (std::size_t e = 0; e < samples.size(); ++e) {
+      const ElementSample& s = samples[e];
+      std::string what;
+      if (!(std::abs(s.shear_angle) < 85 * pi / 180))
+        what = "shear angle " + detail::to_text(s.shear_angle * 180 / pi) +
+               " deg, admissible below 85: warp and weft fall together";
+      for (int i = 0; i < 2; ++i)
+        if (!(s.stretch[i] > 0.2 && s.stretch[i] < 1.5))
+          what = std::string(i == 0 ? "warp" : "weft") + " stretch " + detail::to_text(s.stretch[i]) +
+                 ", admissible 0.2 to 1.5";
+      if (!(s.cell_correction < 1e-3 * longest))
+        what = "the cell is not converged: last correction " + detail::to_text(s.cell_correction) +
+               " mm after " + std::to_string(case_.fabric.cell_sweeps) + " sweeps, admissible below " +
+               detail::to_text(1e-3 * longest);
+      if (what.empty()) continue;
+      const auto X = mesh_.corners(static_cast<int>(e));
+      throw RunError("stroke " + detail::to_text(stroke) + " mm, element " + std::to_string(e) +
+                     " at material point (" + detail::to_text((X[0].x + X[2].x) / 2) + ", " +
+                     detail::to_text((X[0].y + X[2].y) / 2) + ") mm: " + what);
+    }
+  }
+
+  Frame frame(double stroke) const {
+    Frame out;
+    out.time = integrator_.time();
+    out.stroke = stroke;
+    const NodalState<R>& state = integrator_.state();
+    for (int n = 0; n < state.node_count; ++n) {
+      const Vec3<R> x = state.x.get(n);
+      out.points.insert(out.points.end(), {static_cast<double>(x.x), static_cast<double>(x.y),
+                                           static_cast<double>(x.z)});
+    }
+    const std::vector<ElementSample> samples = sample();
+    const auto cell_field = [&](const char* name, auto value) {
+      Field field{name, 1, {}};
+      for (const ElementSample& s : samples) field.values.push_back(value(s));
+      out.cell_fields.push_back(std::move(field));
+    };
+    const auto vector_field = [&](const char* name, auto value) {
+      Field field{name, 3, {}};
+      for (const ElementSample& s : samples) {
+        const Vec3<double> v = value(s);
+        field.values.insert(field.values.end(), {v.x, v.y, v.z});
+      }
+      out.cell_fields.push_back(std::move(field));
+    };
+    cell_field("shear_angle", [](const auto& s) { return s.shear_angle * 180 / pi; });
+    cell_field("yarn_stretch_warp", [](const auto& s) { return s.stretch[0]; });
+    cell_field("yarn_stretch_weft", [](const auto& s) { return s.stretch[1]; });
+    cell_field("yarn_tension_warp", [](const auto& s) { return s.tension[0]; });
+    cell_field("yarn_tension_weft", [](const auto& s) { return s.tension[1]; });
+    cell_field("crimp_height_warp", [](const auto& s) { return s.crimp_height[0]; });
+    cell_field("crimp_height_weft", [](const auto& s) { return s.crimp_height[1]; });
+    cell_field("cell_contact_force", [](const auto& s) { return s.contact_force; });
+    cell_field("slack", [](const auto& s) { return s.slack ? 1.0 : 0.0; });
+    if (case_.fabric.formulation == CellFormulation::second_order)
+      cell_field("fallback", [](const auto& s) { return s.fallback ? 1.0 : 0.0; });
+    vector_field("warp_direction", [](const auto& s) { return s.warp; });
+    vector_field("weft_direction", [](const auto& s) { return s.weft; });
+    out.point_fields.push_back({"shear_angle", 1, node_average(grid_, out.cell_fields[0].values)});
+    Field pressure{"contact_pressure", 1, std::vector<double>(state.node_count, 0.0)};
+    for (const auto& tool : integrator_.tools()) tool->add_pressure(state, pressure.values);
+    out.point_fields.push_back(std::move(pressure));
+    return out;
+  }
+
+  void measure() {
+    for (int e = 0; e < mesh_.element_count(); ++e) result_.quads.push_back(mesh_.elements[e]);
+    const std::vector<double>& points = result_.frames.back().points;
+    const std::vector<ElementSample> samples = sample();
+    std::vector<double> shear;
+    double slack_area = 0, area = 0;
+    for (int e = 0; e < mesh_.element_count(); ++e) {
+      const ElementSample& s = samples[e];
+      shear.push_back(s.shear_angle);
+      area += mesh_.area(e);
+      if (s.slack) slack_area += mesh_.area(e);
+      for (double tension : s.tension)
+        result_.largest_yarn_tension = std::max(result_.largest_yarn_tension, tension);
+      if (std::abs(s.shear_angle) * 180 / pi > std::abs(result_.maximum_shear_deg)) {
+        const auto X = mesh_.corners(e);
+        result_.maximum_shear_deg = s.shear_angle * 180 / pi;
+        result_.maximum_shear_material = {(X[0].x + X[2].x) / 2, (X[0].y + X[2].y) / 2};
+      }
+    }
+    result_.slack_fraction = slack_area / area;
+    result_.shear_points = shear_points(grid_, points, node_average(grid_, shear));
+    result_.outline = outline(grid_, points);
+    result_.draw_in_x = grid_.half_width - points[3 * grid_.node(grid_.nx, 0)];
+    result_.draw_in_y = grid_.half_length - points[3 * grid_.node(0, grid_.ny) + 1];
+    const int corner = grid_.node(grid_.nx, grid_.ny);
+    result_.corner = {points[3 * corner], points[3 * corner + 1]};
+
+    const LedgerRow& end = result_.ledger.back();
+    double worst = 0;
+    for (const LedgerRow& row : result_.ledger) {
+      worst = std::abs(row.residual) > std::abs(worst) ? row.residual : worst;
+      if (row.stroke <= 0.95 * case_.process.stroke && row.punch_work != 0)
+        result_.kinetic_over_punch_work_at_95 = row.kinetic / row.punch_work;
+    }
+    result_.residual_over_punch_work = worst / end.punch_work;
+    result_.kinetic_over_internal_at_end =
+        end.kinetic / (end.yarn + end.shear + end.bending + end.hourglass);
+  }
+
+  DrapeCase case_;
+  QuarterGrid grid_;
+  SymmetryPlanes symmetry_{true, true};
+  Mesh<4> mesh_;
+  PunchStroke punch_;
+  CentralDifference<T> integrator_;
+  DrapeResult result_;
+};
+
+}  // namespace
+
+DrapeResult run(const DrapeCase& drape_case, const Progress& progress) {
+  validate(drape_case);
+  const YarnParameters<double>&warp = drape_case.fabric.cell.warp, &weft = drape_case.fabric.cell.weft;
+  const bool balanced =
+      warp.youngs_modulus == weft.youngs_modulus && warp.cross_section == weft.cross_section &&
+      warp.second_moment_of_area == weft.second_moment_of_area && warp.length == weft.length &&
+      drape_case.fabric.cell.warp_height_fraction == 0.5 &&
+      drape_case.fabric.warp_bending_stiffness == drape_case.fabric.weft_bending_stiffness;
+  if (drape_case.blank.layout != 0 && !balanced)
+    throw InputError("blank.layout", detail::to_text(drape_case.blank.layout), "deg",
+                     "0 for a fabric whose warp and weft differ: a quarter model at 45 deg mirrors "
+                     "warp into weft");
+  if (drape_case.integration.precision == Precision::float_)
+    return QuarterDrape<float>(drape_case).run(progress);
+  return QuarterDrape<double>(drape_case).run(progress);
+}
+
+}  // namespace crossbeam::drape

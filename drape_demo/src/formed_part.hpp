@@ -1,0 +1,33 @@
+#pragma once
+/// @file
+/// What is measured on the formed quarter: shear angles along the benchmark's line, outline, draw-in.
+
+#include "result.hpp"
+
+#include <array>
+#include <vector>
+
+namespace crossbeam::drape {
+
+/// The structured quarter blank: node (i, j) has the number i * (ny + 1) + j.
+struct QuarterGrid {
+  int nx = 0, ny = 0;
+  double half_width = 0, half_length = 0;  ///< [mm]
+  [[nodiscard]] int node(int i, int j) const { return i * (ny + 1) + j; }
+  [[nodiscard]] int node_count() const { return (nx + 1) * (ny + 1); }
+};
+
+/// Average of the adjacent elements on every node.
+std::vector<double> node_average(const QuarterGrid& grid, const std::vector<double>& on_elements);
+
+/// Formed free edges in plan, from the symmetry plane x = 0 to the plane y = 0.
+std::vector<std::array<double, 2>> outline(const QuarterGrid& grid,
+                                           const std::vector<double>& points);
+
+/// Points 1..10 of the paper: the straight line (0, half_length)-(half_width, 0) in the formed plan,
+/// from border to border in nine equal parts, clipped to the quarter; shear bilinear from the nodes.
+/// @param node_shear [rad]
+std::vector<ShearPoint> shear_points(const QuarterGrid& grid, const std::vector<double>& points,
+                                     const std::vector<double>& node_shear);
+
+}  // namespace crossbeam::drape
