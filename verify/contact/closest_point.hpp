@@ -19,8 +19,8 @@ inline double distance(const Point& a, const Point& b) {
   return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-/// Refines until both grid steps are below `resolution`. Distance is stationary in the parameters at
-/// the closest point: a step e along the surface leaves an error of e^2 / (8 distance) only.
+/// Refines until both grid steps are below `resolution`. Distance is stationary at the closest
+/// point: a step e along the surface leaves an error of e^2 / (8 distance) only.
 template <class SurfacePoint>
 double search(const Point& p, Range a, Range b, const SurfacePoint& surface_point,
               int per_side = 60, double resolution = 1e-8) {

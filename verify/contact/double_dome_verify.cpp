@@ -112,10 +112,19 @@ TEST_CASE("V-CONT-04 the double dome has the tabulated heights and the derived d
 
     double step = 0;
     for (double x = 0; x < 90; x += 0.05)
-      step = std::fmax(step, std::abs(late.height(x, std::nextafter(100.0, 0)).h -
-                                      punch.height(x, 100).h));
+      step = std::fmax(
+          step, std::abs(late.height(x, std::nextafter(100.0, 0)).h - punch.height(x, 100).h));
     MESSAGE("step that the ramp 75..100 leaves at y = 100: ", step, " mm");
     CHECK(step > 0.3);
+  }
+  SUBCASE("share of the dome section") {
+    // Symmetric about 86; parabolas through 1/22 * 3/4 of a corner's half length; arrives at 100.
+    CHECK(std::abs(punch.ramp(86).g - 0.5) < 1e-14);
+    CHECK(std::abs(punch.ramp(75).g - 0.75 / 22) < 1e-14);
+    CHECK(std::abs(punch.ramp(97).g - (1 - 0.75 / 22)) < 1e-14);
+    CHECK(punch.ramp(72).g == 0);
+    CHECK(punch.ramp(99.99).g < 1);
+    CHECK(punch.ramp(100).g == 1);
   }
   SUBCASE("derived dimensions") {
     const auto& ridge = punch.ridge();
@@ -156,10 +165,12 @@ TEST_CASE("V-CONT-05 the double dome has no jump in height or slope") {
     double largest = 0;
     for (double x : {0.0, 0.3, 3.0, 9.0, 14.0, 16.6, 18.0, 22.0, 24.0, 31.0, 40.0, 50.0, 60.0, 72.0,
                      79.0, 84.0})
-      largest = std::fmax(largest, largest_kink([&](double y) { return height(x, y); }, -4, 190, eps));
+      largest =
+          std::fmax(largest, largest_kink([&](double y) { return height(x, y); }, -4, 190, eps));
     for (double y : {0.0, 50.0, 71.9, 73.0, 77.9, 85.0, 93.9, 96.0, 98.5, 99.9, 100.0, 104.0, 130.0,
                      154.7, 170.0})
-      largest = std::fmax(largest, largest_kink([&](double x) { return height(x, y); }, -4, 110, eps));
+      largest =
+          std::fmax(largest, largest_kink([&](double x) { return height(x, y); }, -4, 110, eps));
     return largest;
   };
 
@@ -179,6 +190,27 @@ TEST_CASE("V-CONT-05 the double dome has no jump in height or slope") {
       }
       MESSAGE("offset ", offset, ": largest curvature seen ", previous / 0.005, " 1/mm");
       CHECK(previous / 0.005 < 1.2);  // finite: no crease hides below the probe
+    }
+  }
+  SUBCASE("finer, through the blend: a plateau or foot border misplaced by 0.01 mm would show") {
+    const DoubleDome<double> tool;
+    const auto fine_scan = [&](double eps) {
+      double largest = 0;
+      for (double y : {73.0, 85.0, 96.0, 99.0})
+        largest = std::fmax(
+            largest, largest_kink([&](double x) { return tool.height(x, y).h; }, -1, 90, eps));
+      for (double x : {1.0, 9.0, 14.0, 80.0})
+        largest = std::fmax(
+            largest, largest_kink([&](double y) { return tool.height(x, y).h; }, 70, 101, eps));
+      return largest;
+    };
+    double previous = fine_scan(1e-3);
+    for (double eps : {5e-4, 2.5e-4}) {
+      const double kink = fine_scan(eps);
+      INFO("eps ", eps, ": kink ", kink, ", before ", previous);
+      CHECK(previous / kink > 1.9);
+      CHECK(previous / kink < 2.1);
+      previous = kink;
     }
   }
   SUBCASE("the same scan sees a step of the height and a crease") {
@@ -221,10 +253,9 @@ TEST_CASE("V-CONT-05 the double dome has no jump in height or slope") {
             // Value less its linear part from both sides: second order in eps; gradient: first
             // order; curvature below 1.2/mm (scan above). Rounding: 60 mm * 2e-16 in the height
             // and position, times slope 2.8; the slope's own, near a flat, is that over sqrt.
-            const double value_jump = plus.h - minus.h - (plus.h_x + minus.h_x) * ex -
-                                      (plus.h_y + minus.h_y) * ey;
-            const double slope_jump =
-                std::hypot(plus.h_x - minus.h_x, plus.h_y - minus.h_y);
+            const double value_jump =
+                plus.h - minus.h - (plus.h_x + minus.h_x) * ex - (plus.h_y + minus.h_y) * ey;
+            const double slope_jump = std::hypot(plus.h_x - minus.h_x, plus.h_y - minus.h_y);
             INFO("offset ", offset, " at ", p.x, " ", p.y, " angle ", angle, " eps ", eps);
             CHECK(std::abs(value_jump) < 2.4 * eps * eps + 2e-13);
             CHECK(slope_jump < 2.4 * eps + 2e-12);
@@ -292,7 +323,8 @@ TEST_CASE("V-CONT-07 offset surfaces are parallel: exactly on ridge and domes") 
           } else {
             // The miss is small: the tangent plane gives the remaining distance to second order.
             const double miss = (q.z - there.h) * normal_of(there).z;
-            blend_low = std::fmin(blend_low, d - miss), blend_high = std::fmax(blend_high, d - miss);
+            blend_low = std::fmin(blend_low, d - miss),
+            blend_high = std::fmax(blend_high, d - miss);
           }
         }
       for (int n : seen) CHECK(n > 100);
@@ -367,18 +399,15 @@ TEST_CASE("V-CONT-08 a height surface's gap is second-order exact, its clearance
   SUBCASE("clearance") {
     std::mt19937 random(17);
     std::uniform_real_distribution<double> unit(0, 1);
-    const auto surface_point = [&](double s, double t) {
-      return Point{s, t, dome.height(s, t).h};
-    };
+    const auto surface_point = [&](double s, double t) { return Point{s, t, dome.height(s, t).h}; };
     double tightest = 0;
     for (Side side : {Side::above, Side::below}) {
       const HeightSurface surface(dome, side);
       for (int i = 0; i < 40; ++i) {
         const double x = 100 * unit(random), y = 200 * unit(random), lift = 40 * unit(random);
         const Point p{x, y, dome.height(x, y).h + (side == Side::above ? lift : -lift)};
-        const double true_distance =
-            closest_point::search(p, {x - lift, x + lift}, {y - lift, y + lift}, surface_point, 40,
-                                  1e-5);
+        const double true_distance = closest_point::search(
+            p, {x - lift, x + lift}, {y - lift, y + lift}, surface_point, 40, 1e-5);
         const auto answer = surface.gap(p);
         REQUIRE(answer.clearance > 0);
         CHECK(answer.clearance <= true_distance);
@@ -408,14 +437,16 @@ TEST_CASE("V-CONT-12 bad tools are refused by field, value and range") {
   };
   using P = DoubleDomeParameters<double>;
   CHECK(message(with(&P::depth, 60.0)) == "accepted");  // premise: the defaults are good
-  CHECK(message(with(&P::depth, -1.0)) == "dome.depth = -1 [mm] is not admissible: a finite number > 0");
+  CHECK(message(with(&P::depth, -1.0)) ==
+        "dome.depth = -1 [mm] is not admissible: a finite number > 0");
   CHECK(message(with(&P::depth, 92.0)).find("below dome_radius + dome_fillet = 91.66") !=
         std::string::npos);
   CHECK(message(with(&P::depth, 10.0)).find("two arcs = 19.26") != std::string::npos);
   CHECK(message(with(&P::wall_angle, 57.475)).find("dome.wall_angle = 57.475") == 0);
   CHECK(message(with(&P::ridge_edge, std::nan(""))).find("dome.ridge_edge = nan") == 0);
-  CHECK(message(with(&P::dome_axis, 99.0)).find("dome.dome_axis = 99 [mm] is not admissible: at "
-                                                "least blend_end + blend_rounding = 100") == 0);
+  CHECK(message(with(&P::dome_axis, 99.0))
+            .find("dome.dome_axis = 99 [mm] is not admissible: at "
+                  "least blend_end + blend_rounding = 100") == 0);
   CHECK(message(with(&P::blend_start, 95.0)).find("dome.blend_end = 97") == 0);
   CHECK(message(with(&P::blend_start, 1.0)).find("dome.blend_start = 1") == 0);
   CHECK(message([] { DoubleDome<double> tool({}, 34); }).find("dome.offset = 34") == 0);

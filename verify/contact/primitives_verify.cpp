@@ -1,7 +1,7 @@
 // Plane, sphere, cylinder and blank holder: signed distances against a plain search for the closest
 // point on an independent parametrisation of the same body.
 
-#include "crossbeam/base/simd.hpp"
+#include "crossbeam/adapters/autodiff.hpp"
 #include "crossbeam/contact/primitives.hpp"
 #include "crossbeam/contact/stadium_ring.hpp"
 
@@ -35,19 +35,26 @@ std::vector<Point> random_points(int count, Point low, Point high, unsigned seed
   std::vector<Point> points;
   for (int i = 0; i < count; ++i) {
     const double a = unit(random), b = unit(random), c = unit(random);
-    points.push_back({low.x + a * (high.x - low.x), low.y + b * (high.y - low.y),
-                      low.z + c * (high.z - low.z)});
+    points.push_back(
+        {low.x + a * (high.x - low.x), low.y + b * (high.y - low.y), low.z + c * (high.z - low.z)});
   }
   return points;
 }
 
-/// The normal is the gradient of a distance: |n| = 1 and the distance grows at rate 1 along it, so
-/// that walking back by the gap ends on the surface.
+/// A distance has a gradient of length 1, which is the normal, and walking back by the gap ends on
+/// the surface. The gradient comes from dual numbers, which know nothing of the normal's formula.
 template <class S>
 void check_foot_point(const S& surface, const Point& p) {
   const auto at = surface.gap(p);
   CHECK(std::abs(norm(at.normal) - 1) < 1e-14);  // a handful of roundings of 1
   CHECK(at.clearance == at.gap);
+  using Number = Dual<double, 3>;
+  const Number gap = surface
+                         .gap(Vec3<Number>{Number::variable(p.x, 0), Number::variable(p.y, 1),
+                                           Number::variable(p.z, 2)})
+                         .gap;
+  CHECK(gap.value == at.gap);
+  CHECK(norm(Point{gap.d[0], gap.d[1], gap.d[2]} - at.normal) < 1e-14);
   CHECK(std::abs(surface.gap(p - at.gap * at.normal).gap) < rounding);
 }
 
@@ -109,8 +116,8 @@ double ring_distance(const StadiumRingParameters<double>& r, const Point& p) {
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 3; ++j)
       best = std::fmin(best, search(
-          p, {cuts_s[i], cuts_s[i + 1]}, {cuts_t[j], cuts_t[j + 1]},
-          [&](double s, double t) { return ring_point(r, s, t); }, 24));
+                                 p, {cuts_s[i], cuts_s[i + 1]}, {cuts_t[j], cuts_t[j + 1]},
+                                 [&](double s, double t) { return ring_point(r, s, t); }, 24));
   return best;
 }
 
@@ -145,8 +152,8 @@ TEST_CASE("V-CONT-01 plane, sphere and cylinder give the exact signed distance a
     const Sphere<double> sphere(centre, radius);
     for (const Point& p : points) {
       const double expected = search(p, {0, pi}, {0, 2 * pi}, [&](double s, double t) {
-        return centre + Point{radius * std::sin(s) * std::cos(t), radius * std::sin(s) * std::sin(t),
-                              radius * std::cos(s)};
+        return centre + Point{radius * std::sin(s) * std::cos(t),
+                              radius * std::sin(s) * std::sin(t), radius * std::cos(s)};
       });
       const auto answer = sphere.gap(p);
       ++(answer.gap > 0 ? outside : inside);
@@ -199,6 +206,7 @@ TEST_CASE("V-CONT-02 the blank holder's gap is the exact signed distance in all 
       const double expected = ring_distance(r, p);
       REQUIRE(expected > 0.01);
       CHECK(std::abs(std::abs(ring.gap(p).gap) - expected) < search_tolerance);
+      check_foot_point(ring, p);
       ++quadrants[(p.x < 0) + 2 * (p.y < 0)];
     }
   }
@@ -207,8 +215,8 @@ TEST_CASE("V-CONT-02 the blank holder's gap is the exact signed distance in all 
     const double quarter = r.edge_radius * pi / 2;
     const double probe = 1e-4;
     for (int i = 0; i < 37; ++i)
-      for (double t : {-7.0, -1.0, 0.2 * quarter, 0.5 * quarter, 0.9 * quarter, quarter + 2,
-                       quarter + 30}) {
+      for (double t :
+           {-7.0, -1.0, 0.2 * quarter, 0.5 * quarter, 0.9 * quarter, quarter + 2, quarter + 30}) {
         const double s = around * (i + 0.5) / 37;
         const Point p = ring_point(r, s, t);
         // Tangents by central differences of the parametrisation, error O(probe^2) ~ 1e-8 / r_e.
@@ -224,8 +232,8 @@ TEST_CASE("V-CONT-02 the blank holder's gap is the exact signed distance in all 
           const Point q = p + d * n;
           INFO("arc lengths ", s, " ", t, ", distance ", d);
           const auto answer = ring.gap(q);
-          CHECK(std::abs(answer.gap - d) < 1e-7);           // d times the tangents' error, squared
-          CHECK(norm(answer.normal - n) < 1e-6);            // the tangents' error
+          CHECK(std::abs(answer.gap - d) < 1e-7);  // d times the tangents' error, squared
+          CHECK(norm(answer.normal - n) < 1e-6);   // the tangents' error
           check_foot_point(ring, q);
         }
         ++quadrants[(p.x < 0) + 2 * (p.y < 0)];
@@ -246,14 +254,14 @@ TEST_CASE("V-CONT-03 the blank holder is C1 and its parallel surface is exact") 
     };
     const double y_c = r.centre_distance, b = r.opening_radius, e = r.edge_radius;
     const std::vector<Border> borders = {
-        {{b + e, 30, 0}, {1, 0, 0}},        // rounding to flat
-        {{b + e, 30, 2}, {1, 0, 0}},        // the same, above the surface
-        {{b, 30, -e}, {0, 0, 1}},           // wall to rounding
+        {{b + e, 30, 0}, {1, 0, 0}},            // rounding to flat
+        {{b + e, 30, 2}, {1, 0, 0}},            // the same, above the surface
+        {{b, 30, -e}, {0, 0, 1}},               // wall to rounding
         {{b + 0.6 * e, y_c, -0.2}, {0, 1, 0}},  // straight side to half circle
         {{-b - 0.6 * e, -y_c, -0.2}, {0, 1, 0}},
         {{b + 9, y_c, 0}, {0, 1, 0}},
-        {{0, y_c + b + 2, 0}, {1, 0, 0}},   // the y axis, on the half circle
-        {{b + 2, 0, 0}, {0, 1, 0}},         // the x axis
+        {{0, y_c + b + 2, 0}, {1, 0, 0}},  // the y axis, on the half circle
+        {{b + 2, 0, 0}, {0, 1, 0}},        // the x axis
     };
     for (const Border& border : borders) {
       double previous = 0;
@@ -275,8 +283,8 @@ TEST_CASE("V-CONT-03 the blank holder is C1 and its parallel surface is exact") 
       for (const Point& p : random_points(40, {-130, -240, -3}, {130, 240, 30}, 6)) {
         check_parallel(ring, p, d);
         // The same surface built from its own dimensions: opening r - d, edge r_e + d, flat at d.
-        const StadiumRing<double> direct({r.opening_radius - d, r.centre_distance,
-                                          r.edge_radius + d});
+        const StadiumRing<double> direct(
+            {r.opening_radius - d, r.centre_distance, r.edge_radius + d});
         CHECK(std::abs(direct.gap(p - Point{0, 0, d}).gap - ring.offset(d).gap(p).gap) < rounding);
       }
   }

@@ -14,12 +14,12 @@ namespace crossbeam {
 /// Dimensions of the punch, flange plane at z = 0.
 template <class R = double>
 struct DoubleDomeParameters {
-  R depth = R(60);                ///< H, tops above the flange [mm]; in (0, R_d + r_f)
-  R dome_axis = R(100);           ///< y_c, domes about (0, +-y_c) [mm]
-  R dome_radius = R(175) / R(3);  ///< R_d of the spheres [mm]; > 0
-  R dome_fillet = R(100) / R(3);  ///< r_f of the domes' concave foot [mm]; > 0
-  R ridge_flat = R(50) / R(3);    ///< a_0, half width of the flat top [mm]; >= 0
-  R ridge_edge = R(25) / R(3);    ///< r_1 of the convex top edge [mm]; > 0
+  R depth = R(60);                 ///< H, tops above the flange [mm]; in (0, R_d + r_f)
+  R dome_axis = R(100);            ///< y_c, domes about (0, +-y_c) [mm]
+  R dome_radius = R(175) / R(3);   ///< R_d of the spheres [mm]; > 0
+  R dome_fillet = R(100) / R(3);   ///< r_f of the domes' concave foot [mm]; > 0
+  R ridge_flat = R(50) / R(3);     ///< a_0, half width of the flat top [mm]; >= 0
+  R ridge_edge = R(25) / R(3);     ///< r_1 of the convex top edge [mm]; > 0
   R ridge_fillet = R(100) / R(3);  ///< r_2 of the concave foot [mm]; > 0
   R wall_angle = R(57475) / R(180000) * std::numbers::pi_v<R>;  ///< alpha, ridge wall against the
                                                                 ///< flange [rad]; in (0, pi/2)
@@ -200,9 +200,9 @@ class DoubleDome {
     admit(p.blend_end >= p.blend_start + R(2) * p.blend_rounding, "dome.blend_end", p.blend_end,
           "at least blend_start + 2 blend_rounding = " +
               detail::to_text(p.blend_start + R(2) * p.blend_rounding));
-    admit(p.blend_end + p.blend_rounding <= p.dome_axis, "dome.dome_axis", p.dome_axis,
-          "at least blend_end + blend_rounding = " +
-              detail::to_text(p.blend_end + p.blend_rounding));
+    admit(
+        p.blend_end + p.blend_rounding <= p.dome_axis, "dome.dome_axis", p.dome_axis,
+        "at least blend_end + blend_rounding = " + detail::to_text(p.blend_end + p.blend_rounding));
     const R low = -minimum(p.dome_radius, p.ridge_edge);
     const R high = minimum(p.dome_fillet, p.ridge_fillet);
     admit(offset > low && offset < high, "dome.offset", offset,

@@ -29,7 +29,7 @@ class HeightSurface {
     const T n_z = T(R(1)) / sqrt(T(R(1)) + s.h_x * s.h_x + s.h_y * s.h_y);
     const T lift = sign * (p.z - s.h);
     const Vec3<T> upward{-s.h_x * n_z, -s.h_y * n_z, n_z};
-    // A graph no steeper than m stays outside the cone of that slope above or below the point [T-3].
+    // A graph no steeper than m stays outside the cone of slope m about the vertical [T-3].
     const R m = R(height_.max_slope());
     return {lift * n_z, sign * upward, lift * T(R(1) / sqrt(R(1) + m * m))};
   }

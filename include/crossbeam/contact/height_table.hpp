@@ -13,11 +13,11 @@ namespace crossbeam {
 /// Where and how finely a height function is tabulated.
 template <class R = double>
 struct HeightTableGrid {
-  R x0 = R(0), x1 = R(0);  ///< range along x [mm]; x0 < x1
-  R y0 = R(0), y1 = R(0);  ///< range along y [mm]; y0 < y1
+  R x0 = R(0), x1 = R(0);   ///< range along x [mm]; x0 < x1
+  R y0 = R(0), y1 = R(0);   ///< range along y [mm]; y0 < y1
   R spacing = R(1) / R(2);  ///< cell size aimed at; rounded down to fill the range evenly [mm]; > 0
-  bool mirror_x = false;    ///< x = x0 is a symmetry plane: x < x0 is answered from the mirror image
-  bool mirror_y = false;    ///< likewise y = y0
+  bool mirror_x = false;  ///< x = x0 is a symmetry plane: x < x0 is answered from the mirror image
+  bool mirror_y = false;  ///< likewise y = y0
 };
 
 /// Interpolates the samples at the cell centres by a C1 spline whose gradient is the exact
@@ -36,8 +36,8 @@ class HeightTable {
         coefficients_(stride_ * (static_cast<std::size_t>(y_.cells) + 2)) {
     for (int j = 0; j < y_.cells; ++j)
       for (int i = 0; i < x_.cells; ++i)
-        at(i + 1, j + 1) = require_finite("table.source(x, y)",
-                                          sampled(source, x_.centre(i), y_.centre(j)), "mm");
+        at(i + 1, j + 1) =
+            require_finite("table.source(x, y)", sampled(source, x_.centre(i), y_.centre(j)), "mm");
     std::vector<R> work(static_cast<std::size_t>(maximum(x_.cells, y_.cells)));
     for (int j = 1; j <= y_.cells; ++j) solve(&at(0, j), 1, x_.cells, work);
     for (int i = 0; i < x_.cells + 2; ++i) solve(&at(i, 0), stride_, y_.cells, work);
@@ -163,11 +163,11 @@ class HeightTable {
     Place<T> p;
     // A NaN coordinate looks up cell 0 and comes back as NaN through the weights.
     const auto inside = passive(select(t >= zero, t, zero));
-    T base = zero;
+    passive_t<T> base;
     if constexpr (lanes_v<T> == 1) {
       const int cell = static_cast<int>(inside);
       p.cell[0] = cell < axis.cells ? cell : axis.cells - 1;
-      base = T(R(p.cell[0]));
+      base = R(p.cell[0]);
     } else {
       R in[lanes_v<T>], low[lanes_v<T>];
       inside.store(in);
@@ -176,9 +176,9 @@ class HeightTable {
         p.cell[lane] = cell < axis.cells ? cell : axis.cells - 1;
         low[lane] = R(p.cell[lane]);
       }
-      base = T::load(low);
+      base = passive_t<T>::load(low);
     }
-    const T v = t - base, rest = one - v;
+    const T v = t - T(base), rest = one - v;
     const T scale = sign * T(axis.per_spacing);
     p.weight[0] = half * rest * rest;
     p.weight[1] = half + v * rest;
@@ -201,7 +201,7 @@ class HeightTable {
       // Through memory: g++ and clang fill a register lane by lane more slowly, floats most of all.
       R r[lanes_v<T>];
       for (int lane = 0; lane < lanes_v<T>; ++lane) r[lane] = coefficient(lane);
-      return T::load(r);
+      return T(passive_t<T>::load(r));
     }
   }
 

@@ -58,12 +58,9 @@ class StadiumRing {
     const auto outside_core = corner_squared > zero;
     const T corner = sqrt(select(outside_core, corner_squared, one));
     const auto wall_nearer = inward > upward;
-    const T gap =
-        select(outside_core, corner, select(wall_nearer, inward, upward)) - T(rounding_);
-    const T n_in =
-        select(outside_core, inward_part / corner, select(wall_nearer, one, zero));
-    const T n_up =
-        select(outside_core, upward_part / corner, select(wall_nearer, zero, one));
+    const T gap = select(outside_core, corner, select(wall_nearer, inward, upward)) - T(rounding_);
+    const T n_in = select(outside_core, inward_part / corner, select(wall_nearer, one, zero));
+    const T n_up = select(outside_core, upward_part / corner, select(wall_nearer, zero, one));
     return {gap, {-n_in * outward.x, -n_in * outward.y, n_up}, gap};
   }
 
