@@ -93,8 +93,8 @@ template <class E>
 /// Calls the visitor for every field; Case is DrapeCase or const DrapeCase.
 template <class Case, class Visitor>
 void visit_fields(Case& c, Visitor& v) {
-  // The die leaves 5/3 mm of normal play around the closed punch (double dome, depth 60 mm).
-  constexpr double play = 5.0 / 3.0, depth = 60;
+  // The tools: blocks of 270 x 470 mm, 60 mm deep; closed, they leave 5/3 mm of normal play.
+  constexpr double block_half_width = 135, block_half_length = 235, depth = 60, play = 5.0 / 3.0;
 
   v.text("name", c.name);
   v.text("description", c.description);
@@ -139,8 +139,8 @@ void visit_fields(Case& c, Visitor& v) {
   v.leave();
 
   v.enter("blank");
-  v.real("half_width", c.blank.half_width, "mm", above_to(0, 1000));
-  v.real("half_length", c.blank.half_length, "mm", above_to(0, 1000));
+  v.real("half_width", c.blank.half_width, "mm", above_to(0, block_half_width));
+  v.real("half_length", c.blank.half_length, "mm", above_to(0, block_half_length));
   v.real("element_size", c.blank.element_size, "mm", from_to(0.1, 100));
   v.real("layout", c.blank.layout, "deg", either(0, 45));
   v.integer("gauss_points", c.blank.gauss_points, "-", either(1, 4));
