@@ -51,9 +51,11 @@ struct YarnConstants {
   R ka, kb;      ///< axial EA/l0 and bending kbc EI/l0^3 stiffness [kN/mm], tag [C-2]
   R L, H, l0;    ///< projected length, crimp height, chord length in the unstressed cell [mm]
   R c0, s0;      ///< cosine and sine of the crimp angle
+  R least_start_squared;  ///< least height of a start, squared [mm^2], tag [C-5]
 
   YarnConstants() = default;
   YarnConstants(const YarnParameters<R>& yarn, R height, R boundary_factor) {
+    using std::cbrt;
     using std::sqrt;
     L = yarn.length;
     H = height;
@@ -62,6 +64,8 @@ struct YarnConstants {
     s0 = H / l0;
     ka = yarn.youngs_modulus * yarn.cross_section / l0;
     kb = boundary_factor * yarn.youngs_modulus * yarn.second_moment_of_area / (l0 * l0 * l0);
+    const R least = cbrt(R(2) * l0 * l0 * (kb / ka) * c0 * c0 * H) / R(2);
+    least_start_squared = least * least;
   }
 };
 
@@ -260,8 +264,10 @@ class CrossedBeamCell {
   CROSSBEAM_INLINE bool start(const T& u1, const T& u2, T& w1, T& w2) const {
     using std::sqrt;
     const T a1 = spare_height_squared(yarn1_, u1), a2 = spare_height_squared(yarn2_, u2);
-    const T hs1 = sqrt(maximum(a1, T(0))), hs2 = sqrt(maximum(a2, T(0)));
-    const T gap = maximum(T(yarn1_.H + yarn2_.H) - hs1 - hs2, T(0));
+    const T hs1 = sqrt(maximum(a1, T(yarn1_.least_start_squared)));
+    const T hs2 = sqrt(maximum(a2, T(yarn2_.least_start_squared)));
+    const T spare = hs1 + hs2 - T(yarn1_.H + yarn2_.H);
+    const T gap = maximum(-spare, T(0));
     const T x1 = hs1 + T(0.5) * gap, x2 = hs2 + T(0.5) * gap;
     const T k1 = maximum(T(yarn1_.ka / (yarn1_.l0 * yarn1_.l0)) * (T(1.5) * x1 * x1 - T(0.5) * a1),
                          T(R(1e-6) * yarn1_.ka));
@@ -270,7 +276,8 @@ class CrossedBeamCell {
     const T f = k2 / (k1 + k2);
     w1 = hs1 + f * gap - T(yarn1_.H);
     w2 = hs2 + (T(1) - f) * gap - T(yarn2_.H);
-    return !has_bending_ && all(gap <= T(0)) && all(a1 > T(0)) && all(a2 > T(0));
+    // Strictly slack: yarns that just touch are closed, so that the virgin tangent is the taut one.
+    return !has_bending_ && all(spare > T(0)) && all(a1 > T(0)) && all(a2 > T(0));
   }
 
   /// One Newton sweep on {g1 = q, g2 = q, w1 + w2 + q/k3 = 0} with q >= 0 for the unilateral
