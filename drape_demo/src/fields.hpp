@@ -64,9 +64,8 @@ constexpr auto names_of(CellFormulation) {
 }
 constexpr auto names_of(ShearLawKind) {
   using E = ShearLawKind;
-  return std::array<NamedValue<E>, 3>{{{E::constant, "constant"},
-                                       {E::polynomial, "polynomial"},
-                                       {E::tabulated, "tabulated"}}};
+  return std::array<NamedValue<E>, 3>{
+      {{E::constant, "constant"}, {E::polynomial, "polynomial"}, {E::tabulated, "tabulated"}}};
 }
 constexpr auto names_of(ShearMeasure) {
   using E = ShearMeasure;

@@ -112,17 +112,14 @@ Options parse_options(const std::vector<std::string>& arguments) {
   app.get_formatter()->column_width(28);
   app.footer(footer);
   app.set_version_flag("--version", std::string("crossbeam ") + CROSSBEAM_VERSION);
-  app.add_option("--case", case_name,
-                 "realistic (default), paper, paper-literal, or a path *.toml")
+  app.add_option("--case", case_name, "realistic (default), paper, paper-literal, or a path *.toml")
       ->option_text("NAME");
   for (auto& o : list)
     app.add_option(o.option, o.text, fmt::format("{}: {}", o.help, field_range(o.field)))
         ->option_text(o.type);
-  app.add_option("--holder", holder,
-                 "holder force, full part: [N] a number >= 0 and <= 10000")
+  app.add_option("--holder", holder, "holder force, full part: [N] a number >= 0 and <= 10000")
       ->option_text("N");
-  app.add_option("--bending", bending,
-                 "bending stiffness; on: the scene's, else 1.4e-3 kN mm")
+  app.add_option("--bending", bending, "bending stiffness; on: the scene's, else 1.4e-3 kN mm")
       ->option_text("on|off");
   app.add_option("--out", out, "folder of the results; default out/CASE-LAYOUT")
       ->option_text("DIR");
@@ -157,9 +154,9 @@ Options parse_options(const std::vector<std::string>& arguments) {
     throw;
   }
 
-  options.out = out.empty() ? fmt::format("out/{}-{:g}", c.name.empty() ? "drape" : c.name,
-                                          c.blank.layout)
-                            : out;
+  options.out = out.empty()
+                    ? fmt::format("out/{}-{:g}", c.name.empty() ? "drape" : c.name, c.blank.layout)
+                    : out;
   return options;
 }
 

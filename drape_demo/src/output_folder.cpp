@@ -42,14 +42,15 @@ fs::path hidden_sibling(const fs::path& target, const char* kind) {
 }
 
 bool is_running(const std::string& process) {
-  const bool number = !process.empty() && process.size() < 10 &&
-                      std::all_of(process.begin(), process.end(),
-                                  [](char c) { return c >= '0' && c <= '9'; });
+  const bool number =
+      !process.empty() && process.size() < 10 &&
+      std::all_of(process.begin(), process.end(), [](char c) { return c >= '0' && c <= '9'; });
   return !number || kill(static_cast<pid_t>(std::stol(process)), 0) == 0 || errno == EPERM;
 }
 
 bool on_another_device(const fs::path& folder, const fs::path& parent) {
-  struct stat a {}, b {};
+  using Status = struct stat;
+  Status a{}, b{};
   return stat(folder.c_str(), &a) == 0 && stat(parent.c_str(), &b) == 0 && a.st_dev != b.st_dev;
 }
 
@@ -80,8 +81,8 @@ OutputFolder::OutputFolder(const fs::path& target) {
   fs::create_directory(partial_, error);
   if (error) {
     remove_empty_parents();
-    refuse(target_, fmt::format("a folder that can be made: {}: {}",
-                                target_.parent_path().string(), error.message()));
+    refuse(target_, fmt::format("a folder that can be made: {}: {}", target_.parent_path().string(),
+                                error.message()));
   }
 }
 
@@ -118,8 +119,8 @@ void OutputFolder::make_parents() {
   fs::create_directories(target_.parent_path(), error);
   if (error) {
     remove_empty_parents();
-    refuse(target_, fmt::format("a folder that can be made: {}: {}",
-                                target_.parent_path().string(), error.message()));
+    refuse(target_, fmt::format("a folder that can be made: {}: {}", target_.parent_path().string(),
+                                error.message()));
   }
 }
 

@@ -31,13 +31,11 @@ Progress::Style Progress::style_for(bool quiet, std::FILE* stream) {
 
 std::string Progress::line(Style style, double fraction, double stroke_mm, double elapsed_s) {
   const double done = std::clamp(fraction, 0.0, 1.0);
-  const std::string time =
-      done >= 1    ? "took " + minutes(elapsed_s)
-      : done > 0.01 ? "left " + minutes(elapsed_s * (1 - done) / done)
-                    : "left -:--";
-  const std::string numbers =
-      fmt::format("{:3.0f} %   stroke {:5.1f} mm   {:<12}", std::floor(100 * done), stroke_mm,
-                  time);
+  const std::string time = done >= 1     ? "took " + minutes(elapsed_s)
+                           : done > 0.01 ? "left " + minutes(elapsed_s * (1 - done) / done)
+                                         : "left -:--";
+  const std::string numbers = fmt::format("{:3.0f} %   stroke {:5.1f} mm   {:<12}",
+                                          std::floor(100 * done), stroke_mm, time);
   if (style != Style::bar) return numbers.substr(0, numbers.find_last_not_of(' ') + 1);
   constexpr int width = 40;
   const int filled = static_cast<int>(std::floor(done * width));

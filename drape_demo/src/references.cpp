@@ -28,8 +28,8 @@ class Reader {
   }
   [[nodiscard]] std::vector<double> numbers(const std::string& name, std::size_t count = 0) const {
     const auto* array = root_.at_path(name).as_array();
-    const std::string admissible = count > 0 ? fmt::format("a list of {} finite numbers", count)
-                                             : "a list of finite numbers";
+    const std::string admissible =
+        count > 0 ? fmt::format("a list of {} finite numbers", count) : "a list of finite numbers";
     if (array == nullptr || (count > 0 && array->size() != count)) refuse(name, admissible);
     std::vector<double> values;
     for (const auto& item : *array) {

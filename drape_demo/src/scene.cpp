@@ -113,6 +113,13 @@ class RangeCheck {
 /// The shear laws must not lose stiffness below zero up to this angle, beyond every formed part.
 constexpr double largest_shear = 1.2;
 
+/// The first place that is known.
+std::string first_known(const std::vector<std::string>& places) {
+  for (const auto& place : places)
+    if (!place.empty()) return place;
+  return "";
+}
+
 void check_polynomial(const ShearInput& shear, const Locator& where) {
   const std::string field = "fabric.shear.coefficients";
   const std::string rule = fmt::format(
@@ -121,7 +128,7 @@ void check_polynomial(const ShearInput& shear, const Locator& where) {
   if (shear.coefficients.empty())
     throw InputError(field, "[]", "kN/mm",
                      "at least one coefficient when fabric.shear.kind is \"polynomial\"" +
-                         where("fabric.shear.kind"));
+                         first_known({where(field), where("fabric.shear.kind")}));
   constexpr int samples = 1200;
   for (int i = 0; i <= samples; ++i) {
     const double angle = largest_shear * i / samples;
@@ -129,9 +136,9 @@ void check_polynomial(const ShearInput& shear, const Locator& where) {
     for (auto c = shear.coefficients.rbegin(); c != shear.coefficients.rend(); ++c)
       modulus = modulus * angle + *c;
     if (!(modulus >= 0))
-      throw InputError(field, fmt::format("{}", fmt::join(shear.coefficients, ", ")), "kN/mm",
-                       fmt::format("{}, but G({:.3f}) = {:.4g}", rule, angle, modulus) +
-                           where(field));
+      throw InputError(
+          field, fmt::format("{}", fmt::join(shear.coefficients, ", ")), "kN/mm",
+          fmt::format("{}, but G({:.3f}) = {:.4g}", rule, angle, modulus) + where(field));
   }
 }
 
@@ -139,7 +146,9 @@ void check_table(const ShearInput& shear, const Locator& where) {
   const std::string angle = "fabric.shear.angle", traction = "fabric.shear.traction";
   const auto refuse = [&where](const std::string& field, const std::string& value,
                                const std::string& unit, const std::string& rule) {
-    throw InputError(field, value, unit, rule + where(field.substr(0, field.find('['))));
+    throw InputError(
+        field, value, unit,
+        rule + first_known({where(field.substr(0, field.find('['))), where("fabric.shear.kind")}));
   };
   if (shear.angle.size() < 2)
     refuse(angle, fmt::format("{} numbers", shear.angle.size()), "rad",
@@ -173,14 +182,13 @@ void check_case(const DrapeCase& c, const Locator& where) {
 
   const double smaller = std::min(c.blank.half_width, c.blank.half_length);
   if (c.blank.element_size > smaller / 2)
-    throw InputError("blank.element_size", fmt::format("{}", c.blank.element_size), "mm",
-                     fmt::format("at most half of the smaller of half_width and half_length, {}",
-                                 smaller / 2) +
-                         where("blank.element_size"));
+    throw InputError(
+        "blank.element_size", fmt::format("{}", c.blank.element_size), "mm",
+        fmt::format("at most half of the smaller of half_width and half_length, {}", smaller / 2) +
+            where("blank.element_size"));
   if (c.blank.perturbation > c.blank.element_size / 10)
     throw InputError("blank.perturbation", fmt::format("{}", c.blank.perturbation), "mm",
-                     fmt::format("at most a tenth of element_size, {}",
-                                 c.blank.element_size / 10) +
+                     fmt::format("at most a tenth of element_size, {}", c.blank.element_size / 10) +
                          where("blank.perturbation"));
 }
 
@@ -198,7 +206,8 @@ class TomlReader {
     const toml::table* table = nullptr;
     if (node != nullptr) {
       table = node->as_table();
-      if (table == nullptr) refuse(path_.name(name), *node, "", "a table, [" + path_.name(name) + "]");
+      if (table == nullptr)
+        refuse(path_.name(name), *node, "", "a table, [" + path_.name(name) + "]");
     }
     path_.enter(name);
     levels_.push_back({table, {}});
@@ -271,8 +280,7 @@ class TomlReader {
   [[nodiscard]] Locator locator() const {
     return [source = source_, lines = lines_](const std::string& field) {
       const auto line = lines.find(field);
-      return line == lines.end() ? std::string()
-                                 : fmt::format(" ({}:{})", source, line->second);
+      return line == lines.end() ? std::string() : fmt::format(" ({}:{})", source, line->second);
     };
   }
 
@@ -312,10 +320,10 @@ class TomlReader {
       if (std::find(level.known.begin(), level.known.end(), name) != level.known.end()) continue;
       const std::string table = path_.name("");
       refuse(path_.name(name), node, "",
-             fmt::format("no such key{}; the keys {} are {}", hint(name, level.known),
-                         table.empty() ? "of a scene"
-                                       : "of [" + table.substr(0, table.size() - 1) + "]",
-                         fmt::join(level.known, ", ")));
+             fmt::format(
+                 "no such key{}; the keys {} are {}", hint(name, level.known),
+                 table.empty() ? "of a scene" : "of [" + table.substr(0, table.size() - 1) + "]",
+                 fmt::join(level.known, ", ")));
     }
   }
 
@@ -449,9 +457,9 @@ std::filesystem::path scene_path(const std::string& case_or_path) {
     return scene_folder() / (case_or_path + ".toml");
   const std::filesystem::path path(case_or_path);
   if (path.extension() != ".toml")
-    throw InputError("--case", case_or_path, "",
-                     alternatives(names) + ", or the path of a scene file, *.toml" +
-                         hint(case_or_path, names));
+    throw InputError(
+        "--case", case_or_path, "",
+        alternatives(names) + ", or the path of a scene file, *.toml" + hint(case_or_path, names));
   if (!std::filesystem::is_regular_file(path))
     throw InputError("--case", case_or_path, "", "the path of an existing scene file");
   return path;

@@ -68,8 +68,7 @@ Json machine_json() {
   const bool known = uname(&system) == 0;
   return {{"processor", processor()},
           {"cores", std::thread::hardware_concurrency()},
-          {"system", known ? fmt::format("{} {} {}", system.sysname, system.release,
-                                         system.machine)
+          {"system", known ? fmt::format("{} {} {}", system.sysname, system.release, system.machine)
                            : "unknown"}};
 }
 
@@ -137,10 +136,8 @@ Json references_json(const References& r) {
         {"slack_flange_shear_deg", r.study.slack_flange_shear_deg},
         {"maximum_shear_deg", banded_json(r.study.maximum_shear_deg)},
         {"maximum_shear_material", r.study.maximum_shear_material},
-        {"draw_in",
-         {{"x", banded_json(r.study.draw_in_x)}, {"y", banded_json(r.study.draw_in_y)}}},
-        {"corner",
-         {{"x", banded_json(r.study.corner[0])}, {"y", banded_json(r.study.corner[1])}}},
+        {"draw_in", {{"x", banded_json(r.study.draw_in_x)}, {"y", banded_json(r.study.draw_in_y)}}},
+        {"corner", {{"x", banded_json(r.study.corner[0])}, {"y", banded_json(r.study.corner[1])}}},
         {"shear_energy", banded_json(r.study.shear_energy)}}},
       {"second_code",
        {{"name", r.second_code.name},
@@ -216,7 +213,8 @@ std::string shear_points_csv(const DrapeResult& result) {
 
 std::string outline_csv(const DrapeResult& result) {
   std::string csv = "x [mm],y [mm]\n";
-  for (const auto& point : result.outline) csv += fmt::format("{:.10g},{:.10g}\n", point[0], point[1]);
+  for (const auto& point : result.outline)
+    csv += fmt::format("{:.10g},{:.10g}\n", point[0], point[1]);
   return csv;
 }
 
@@ -245,8 +243,7 @@ void write_result(const std::filesystem::path& folder, const DrapeCase& drape_ca
   write_file(folder / "shear_points.csv", shear_points_csv(result));
   write_file(folder / "outline.csv", outline_csv(result));
   write_file(folder / "energy.csv", energy_csv(result));
-  write_file(folder / "summary.json",
-             summary_json(drape_case, result, references).dump(2) + "\n");
+  write_file(folder / "summary.json", summary_json(drape_case, result, references).dump(2) + "\n");
 }
 
 }  // namespace crossbeam::drape

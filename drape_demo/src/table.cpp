@@ -48,8 +48,8 @@ class Comparison {
   void line(const std::string& name, const std::string& place, double value, int digits,
             const std::string& net, const Banded* study, const std::string& second,
             const std::string& unit) {
-    const bool off = judged_ && study != nullptr &&
-                     std::abs(value - study->value) > study->band * (1 + 1e-9);
+    const bool off =
+        judged_ && study != nullptr && std::abs(value - study->value) > study->band * (1 + 1e-9);
     marked_ = marked_ || off;
     const std::string banded =
         study == nullptr ? "" : fmt::format("{:.{}f} +- {:.{}f}", study->value, 1, study->band, 1);
@@ -105,7 +105,7 @@ std::string comparison(const DrapeCase& c, const DrapeResult& result, const Refe
   }
   table.line("maximum", place(result.maximum_shear_material[0], result.maximum_shear_material[1]),
              result.maximum_shear_deg, 2, net(r.net.maximum_shear_deg),
-             study(r.study.maximum_shear_deg), "", "deg, at the flat blank's (x, y)");
+             study(r.study.maximum_shear_deg), "", "deg (flat x, y)");
   table.line("draw-in x", "", result.draw_in_x, 2, net(r.net.draw_in_x), study(r.study.draw_in_x),
              second(r.second_code.draw_in_x), "mm");
   table.line("draw-in y", "", result.draw_in_y, 2, net(r.net.draw_in_y), study(r.study.draw_in_y),
@@ -118,13 +118,12 @@ std::string comparison(const DrapeCase& c, const DrapeResult& result, const Refe
                       newton_millimetre * r.study.shear_energy.band};
   const double shear = result.ledger.empty() ? 0 : result.ledger.back().shear;
   table.line("shear energy", "", newton_millimetre * shear, 2, "", study(energy), "",
-             "N mm, of the quarter");
+             "N mm (quarter)");
 
   std::string text = rule("shear angles and shape") + table.text();
   if (aligned)
-    text += fmt::format(
-        "net: kinematics only; study and second code ({}): case realistic{}\n",
-        r.second_code.name, table.marked() ? "; * outside the study's band" : "");
+    text += fmt::format("net: kinematics only; study and second code ({}): case realistic\n{}",
+                        r.second_code.name, table.marked() ? "* outside the study's band\n" : "");
   else
     text += "the references are of 0/90 fibres and not shown\n";
   return text;
@@ -157,7 +156,8 @@ std::string ledger(const DrapeResult& result) {
     text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
   }
   text += fmt::format(
-      "largest residual {:.1e} of the punch work; kinetic energy {:.2g} % of the punch work at 95 % "
+      "largest residual {:.1e} of the punch work; kinetic energy {:.2g} % of the punch work at 95 "
+      "% "
       "stroke,\n{:.1e} of the internal energy at the end\n",
       result.residual_over_punch_work, 100 * result.kinetic_over_punch_work_at_95,
       result.kinetic_over_internal_at_end);
@@ -169,12 +169,12 @@ std::string cost(const DrapeResult& result) {
   text += fmt::format("slack yarns on {:.1f} % of the area, largest yarn tension {:.2f} N/mm",
                       100 * result.slack_fraction, newton_millimetre * result.largest_yarn_tension);
   if (result.cell_fallbacks > 0)
-    text += fmt::format("\nsecond-order cell answered by the energy cell in {} element-steps "
-                        "({:.2g} %)",
-                        result.cell_fallbacks,
-                        100.0 * static_cast<double>(result.cell_fallbacks) /
-                            static_cast<double>(std::max<std::int64_t>(
-                                1, result.cost.element_steps)));
+    text += fmt::format(
+        "\nsecond-order cell answered by the energy cell in {} element-steps "
+        "({:.2g} %)",
+        result.cell_fallbacks,
+        100.0 * static_cast<double>(result.cell_fallbacks) /
+            static_cast<double>(std::max<std::int64_t>(1, result.cost.element_steps)));
   text += fmt::format(
       "\n{} steps of {:.4g} us, {:.4g} million element-steps, "
       "{:.1f} ns per element-step,\n{:.2f} s CPU, {:.2f} s wall\n",
