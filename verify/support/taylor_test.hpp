@@ -22,7 +22,7 @@ struct TaylorResult {
   std::string table;  ///< eps, remainder, slope; for the failure message
 };
 
-/// @param remainder callable double -> double, signed or not
+/// @param remainder callable double -> real number, signed or not
 /// @param round_off remainders below it are noise and end the table
 template <class Remainder>
 TaylorResult taylor_test(int expected_slope, Remainder remainder, double first_step = 1e-2,

@@ -1,0 +1,375 @@
+// The proven solver: one equilibrium, reached from the closed-form start in a few sweeps, for any
+// admissible fabric; in every real type, in every lane, and with a status where there is none.
+
+#include "cell/states.hpp"
+#include "crossbeam/base/simd.hpp"
+#include "crossbeam/cell/second_order.hpp"
+
+#include "support/claim.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+using crossbeam::CellStatus;
+using crossbeam::Pack;
+using crossbeam::SolverControl;
+using verify::Answer;
+using verify::answer;
+using verify::Cell;
+using verify::converged;
+using verify::Parameters;
+
+using LongYarn = crossbeam::YarnState<long double>;
+
+/// Violation of the equilibrium conditions at an answer, in long double: vertical forces g1 = g2 = q
+/// relative to EA/l0 L3 of the stiffer yarn, closure relative to L3, and the signs.
+double residual(const Cell& cell, double u1, double u2, const Answer& a) {
+  const LongYarn y1(cell.warp(), static_cast<long double>(u1),
+                    static_cast<long double>(a.forces.w1));
+  const LongYarn y2(cell.weft(), static_cast<long double>(u2),
+                    static_cast<long double>(a.forces.w2));
+  const double L3 = cell.parameters().contact_length;
+  const double force = std::max(cell.warp().ka, cell.weft().ka) * L3;
+  const double q = a.forces.q;
+  const double g1 = static_cast<double>(y1.vertical_force(cell.warp()));
+  const double g2 = static_cast<double>(y2.vertical_force(cell.weft()));
+  // Contact law: shortening q/k3 when it presses, a gap when it does not.
+  const double gap = (a.forces.w1 + a.forces.w2 + q / cell.contact_stiffness()) / L3;
+  const double contact = q > 0 ? std::abs(gap) : std::max(-gap, 0.0);
+  const double heights = std::max({-(cell.warp().H + a.forces.w1), -(cell.weft().H + a.forces.w2),
+                                   0.0}) / L3;
+  return std::max({std::abs(g1 - q) / force, std::abs(g2 - q) / force, contact, heights});
+}
+
+/// Equilibrium by two nested bisections on monotone functions: slow, and free of Newton, start
+/// values and every formula of the solver but the yarn's energy gradient.
+struct Bisection {
+  const Cell& cell;
+  long double u1, u2;
+
+  static long double gradient(const crossbeam::YarnConstants<double>& y, long double u,
+                              long double h) {
+    // g = ka h (1 - l0/l) + kb c0 t, written from the energy and not as the kernel does.
+    const long double Lc = y.L + u, l = std::sqrt(Lc * Lc + h * h);
+    const long double l0 = std::sqrt(static_cast<long double>(y.L) * y.L +
+                                     static_cast<long double>(y.H) * y.H);
+    const long double t = (y.L * (h - y.H) - y.H * u) / l0;
+    return y.ka * h * (1 - l0 / l) + y.kb * (y.L / l0) * t;
+  }
+  /// The root of g = q on the increasing branch of the convex function g.
+  static long double height(const crossbeam::YarnConstants<double>& y, long double u,
+                            long double q) {
+    const auto slope = [&](long double h) {
+      const long double Lc = y.L + u, l = std::sqrt(Lc * Lc + h * h);
+      const long double l0 = std::sqrt(static_cast<long double>(y.L) * y.L +
+                                       static_cast<long double>(y.H) * y.H);
+      return y.ka * (1 - l0 * Lc * Lc / (l * l * l)) + y.kb * (y.L / l0) * (y.L / l0);
+    };
+    long double low = 0, high = 3 * (static_cast<long double>(y.L) + y.H);
+    if (slope(0) < 0) {
+      long double a = 0, b = high;
+      for (int k = 0; k < 100; ++k) (slope((a + b) / 2) < 0 ? a : b) = (a + b) / 2;
+      low = a;
+    }
+    if (gradient(y, u, low) >= q) return low;
+    for (int k = 0; k < 100; ++k)
+      (gradient(y, u, (low + high) / 2) < q ? low : high) = (low + high) / 2;
+    return (low + high) / 2;
+  }
+  long double closure(long double q) const {
+    return height(cell.warp(), u1, q) + height(cell.weft(), u2, q) + q / cell.contact_stiffness() -
+           cell.warp().H - cell.weft().H;
+  }
+  long double contact_force() const {
+    if (closure(0) >= 0) return 0;
+    long double low = 0, high = cell.contact_stiffness() * cell.parameters().contact_length;
+    for (int k = 0; k < 100; ++k)
+      (closure((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+    return (low + high) / 2;
+  }
+};
+
+}  // namespace
+
+TEST_SUITE_BEGIN("cell");
+
+TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine sweeps") {
+  VERIFY_RANDOM(random, 2011);
+  constexpr int fabrics = 25000, strains = 8;
+  long failures = 0, states = 0, above_nine = 0;
+  std::array<long, 51> histogram{};
+  verify::Worst worst_residual;
+  int most = 0;
+  for (int f = 0; f < fabrics; ++f) {
+    const Cell cell(f % 10 == 0 ? verify::table_1() : verify::random_fabric(random));
+    for (int k = 0; k < strains; ++k) {
+      const double u1 = cell.warp().L * random.uniform(-0.2, 0.1);
+      const double u2 = cell.weft().L * random.uniform(-0.2, 0.1);
+      const Answer a = answer(cell, u1, u2);
+      ++states;
+      ++histogram[a.sweeps];
+      most = std::max(most, a.sweeps);
+      above_nine += a.sweeps > 9;
+      failures += !converged(a);
+      worst_residual.see(residual(cell, u1, u2, a), "fabric", f, "u =", u1, u2, "I1 =",
+                         cell.parameters().warp.second_moment_of_area, "E2 =",
+                         cell.parameters().weft.youngs_modulus, "L3 =",
+                         cell.parameters().contact_length, "sweeps", a.sweeps);
+    }
+  }
+  std::string table;
+  for (int k = 0; k <= most; ++k) table += " " + std::to_string(histogram[k]);
+  INFO("states by sweeps 0, 1, ...:", table);
+  REQUIRE(states == 200000);
+  verify::claim("V-CELL-11", static_cast<double>(failures), 0,
+                "failures in 200000 random states of 22500 random fabrics and Table 1");
+  // Four million such states needed more than nine five times and eleven once.
+  verify::claim("V-CELL-11", static_cast<double>(above_nine) / static_cast<double>(states), 2e-5,
+                "share above nine sweeps; states by sweeps 0, 1, ...:" + table);
+  verify::claim("V-CELL-11", most, 12, "most sweeps");
+  // Twenty roundings of EA/l0 L3.
+  worst_residual.claim("V-CELL-11", 4e-15, "violation of the equilibrium, relative to EA/l0 L3");
+
+  // The hardest states: a slack yarn at the very length where it becomes straight, with so little
+  // bending that its height is a cube root of it.
+  int hardest = 0;
+  for (double I = 1e-16; I < 2e-4; I *= 10) {
+    Parameters p = verify::table_1();
+    p.warp.second_moment_of_area = p.weft.second_moment_of_area = I;
+    const Cell cell(p);
+    const double straight = cell.weft().l0 - cell.weft().L;
+    for (const double u1 : {-0.5, -0.2, -0.1, -0.05})
+      for (double distance = 1e-18; distance < 0.1; distance *= 1.3)
+        for (const double side : {-1.0, 1.0}) {
+          const Answer a = answer(cell, u1, straight + side * distance);
+          REQUIRE(converged(a));
+          hardest = std::max(hardest, a.sweeps);
+        }
+  }
+  verify::claim("V-CELL-11", hardest, 9, "most sweeps of a slack yarn about its straight length");
+}
+
+TEST_CASE("V-CELL-25 there is one equilibrium: nested bisection finds the solver's answer") {
+  VERIFY_RANDOM(random, 2025);
+  verify::Worst contact, heights;
+  int closed = 0, open = 0;
+  for (int sample = 0; sample < 600; ++sample) {
+    const Cell cell(sample % 4 == 0 ? verify::table_1() : verify::random_fabric(random));
+    const double u1 = cell.warp().L * random.uniform(-0.2, 0.1);
+    const double u2 = cell.weft().L * random.uniform(-0.2, 0.1);
+    const Answer a = answer(cell, u1, u2);
+    REQUIRE(converged(a));
+    (a.closed ? closed : open)++;
+    const Bisection exact{cell, u1, u2};
+    const long double q = exact.contact_force();
+    const double force = std::max(cell.warp().ka, cell.weft().ka) * cell.parameters().contact_length;
+    contact.see(static_cast<double>(std::abs(a.forces.q - q)) / force, "sample", sample);
+    const auto see = [&](const crossbeam::YarnConstants<double>& y, double u, double w) {
+      const long double h = Bisection::height(y, u, q);
+      const double k_hh = crossbeam::YarnState<double>(y, u, w).k_hh(y);
+      // A height is as uncertain as a rounding of g divided by its slope, and that is what counts.
+      heights.see(static_cast<double>(std::abs(y.H + w - h)) * std::min(k_hh, y.ka) /
+                      (y.ka * cell.parameters().contact_length),
+                  "sample", sample, "h =", static_cast<double>(h), "w =", w);
+    };
+    see(cell.warp(), u1, a.forces.w1);
+    see(cell.weft(), u2, a.forces.w2);
+  }
+  REQUIRE(closed > 100);
+  REQUIRE(open > 100);
+  contact.claim("V-CELL-25", 1e-14, "contact force, relative to EA/l0 L3");
+  heights.claim("V-CELL-25", 1e-14, "heights, as forces relative to EA/l0 L3");
+}
+
+TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the printed table") {
+  // Reference: the converged answer in long double.
+  const Cell cell(verify::table_1());
+  const crossbeam::CrossedBeamCell<long double> exact_cell{crossbeam::CellParameters<long double>{}};
+  std::array<double, 5> drape{}, wide{};
+  for (int i = -200; i <= 100; ++i)
+    for (int j = -200; j <= 100; ++j) {
+      const double u1 = 0.001 * i * 2.5, u2 = 0.001 * j * 2.5;
+      const auto exact = answer(exact_cell, u1, u2).forces;
+      const bool inside = i >= -20 && j >= -20 && i <= 30 && j <= 30;
+      for (int n = 1; n <= 4; ++n) {
+        const auto f = cell.solve(u1, u2, SolverControl::fixed(n)).forces;
+        const double error = static_cast<double>(std::max(std::abs(f.F1 - exact.F1),
+                                                          std::abs(f.F2 - exact.F2)));
+        wide[n] = std::max(wide[n], error);
+        if (inside) drape[n] = std::max(drape[n], error);
+      }
+    }
+  // The numbers of the table in docs/theory/cell.md, rounded up; the fourth column is round-off.
+  const std::array<double, 5> drape_table{0, 1.6e-3, 7.1e-7, 1.4e-13, 2e-15};
+  const std::array<double, 5> wide_table{0, 1.7e-3, 9.5e-6, 2.5e-9, 4e-15};
+  for (int n = 1; n <= 4; ++n) {
+    const std::string sweeps = std::to_string(n) + " sweeps [kN]";
+    verify::claim("V-CELL-12", drape[n], drape_table[n], "Table 1, strains -2..3 %, " + sweeps);
+    verify::claim("V-CELL-12", wide[n], wide_table[n], "Table 1, strains -20..10 %, " + sweeps);
+  }
+
+  // Any fabric: the error as a strain, dF / (EA/l0 L) of the stiffer yarn.
+  VERIFY_RANDOM(random, 2012);
+  constexpr std::array<int, 6> sweeps{2, 3, 4, 5, 6, 8};
+  // The printed numbers; another seed may double them. The least rounding is 1e-16.
+  const std::array<double, 6> percentile_99{2.2e-4, 2.8e-6, 7.9e-10, 2e-16, 1e-16, 1e-16};
+  const std::array<double, 6> largest{1.2e-2, 3.0e-3, 3.7e-4, 8.4e-6, 3.3e-8, 2e-16};
+  std::array<std::vector<double>, 6> errors;
+  for (int f = 0; f < 10000; ++f) {
+    const Cell any(verify::random_fabric(random));
+    const double scale = std::max(any.warp().ka * any.warp().L, any.weft().ka * any.weft().L);
+    for (int k = 0; k < 4; ++k) {
+      const double u1 = any.warp().L * random.uniform(-0.2, 0.1);
+      const double u2 = any.weft().L * random.uniform(-0.2, 0.1);
+      const auto exact = answer(any, u1, u2).forces;
+      for (std::size_t n = 0; n < sweeps.size(); ++n) {
+        const auto g = any.solve(u1, u2, SolverControl::fixed(sweeps[n])).forces;
+        errors[n].push_back(std::max(std::abs(g.F1 - exact.F1), std::abs(g.F2 - exact.F2)) / scale);
+      }
+    }
+  }
+  for (std::size_t n = 0; n < sweeps.size(); ++n) {
+    std::sort(errors[n].begin(), errors[n].end());
+    const std::string count = std::to_string(sweeps[n]) + " sweeps";
+    verify::claim("V-CELL-12", errors[n][errors[n].size() * 99 / 100], 2 * percentile_99[n],
+                  "any fabric, strains -20..10 %, 99 % of the states, as a strain, " + count);
+    verify::claim("V-CELL-12", errors[n].back(), 2 * largest[n],
+                  "any fabric, strains -20..10 %, largest, as a strain, " + count);
+  }
+}
+
+TEST_CASE("V-CELL-21 input without an answer gets a status, never a hang or a silent NaN") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  const std::vector<double> adversaries{
+      0, -0.0, tiny, -tiny, 1e-300, -1e-300, 1e-16, -1e-16, 0.02, -0.02, 2.5, 25, 1e8, 1e150, 1e308,
+      -2.4999999, -2.5, std::nextafter(-2.5, -3), -2.6, -5, -1e8, -1e150, -1e308, nan, inf, -inf};
+  long silent = 0, wrong = 0, asked = 0;
+  const auto finite = [](const crossbeam::CellForces<double>& f) {
+    return std::isfinite(f.F1) && std::isfinite(f.F2) && std::isfinite(f.w1) &&
+           std::isfinite(f.w2) && std::isfinite(f.q);
+  };
+  const auto ask = [&](const auto& cell, double u1, double u2) {
+    const auto s = cell.solve(u1, u2);
+    ++asked;
+    CAPTURE(u1);
+    CAPTURE(u2);
+    const bool says_fine = s.status == CellStatus::converged;
+    CHECK_FALSE((says_fine && !finite(s.forces)));
+    silent += says_fine && !finite(s.forces);
+    // No answer exists below a yarn of no length, nor for a NaN.
+    const bool none = !(u1 > -2.5 && u2 > -2.5);
+    CHECK_FALSE((none && says_fine));
+    wrong += none && says_fine;
+    // Elongations of up to twice the length do have one.
+    if constexpr (std::is_same_v<std::decay_t<decltype(cell)>, Cell>)
+      if (u1 >= -2.0 && u2 >= -2.0 && u1 <= 5 && u2 <= 5) CHECK(says_fine);
+  };
+  for (const bool bending : {true, false}) {
+    const Parameters p = bending ? verify::table_1() : verify::table_1_without_bending();
+    const Cell energy(p);
+    const crossbeam::BilateralCell<double> bilateral(p);
+    const crossbeam::SecondOrderCell<double> second_order(p);
+    for (const double u1 : adversaries)
+      for (const double u2 : adversaries) {
+        ask(energy, u1, u2);
+        ask(bilateral, u1, u2);
+        ask(second_order, u1, u2);
+      }
+  }
+  REQUIRE(asked == 2 * 3 * 26 * 26);
+  verify::claim("V-CELL-21", static_cast<double>(silent), 0, "non-finite answers called converged");
+  verify::claim("V-CELL-21", static_cast<double>(wrong), 0,
+                "answers called converged where there is no equilibrium");
+}
+
+TEST_CASE("V-CELL-23 float and long double agree with double to their precision") {
+  VERIFY_RANDOM(random, 2023);
+  const crossbeam::CrossedBeamCell<float> in_float{crossbeam::CellParameters<float>{}};
+  const Cell in_double(verify::table_1());
+  const crossbeam::CrossedBeamCell<long double> in_long{crossbeam::CellParameters<long double>{}};
+  verify::Worst float_force, double_force, float_status;
+  for (int sample = 0; sample < 20000; ++sample) {
+    const float u1 = static_cast<float>(2.5 * random.uniform(-0.02, 0.03));
+    const float u2 = static_cast<float>(2.5 * random.uniform(-0.02, 0.03));
+    const auto f = answer(in_float, u1, u2);
+    const auto d = answer(in_double, u1, u2);
+    const auto l = answer(in_long, u1, u2);
+    float_status.see(converged(f) && converged(d) && converged(l) ? 0 : 1, u1, u2);
+    const auto error = [&](const auto& a) {
+      return static_cast<double>(std::max(std::abs(a.forces.F1 - l.forces.F1),
+                                          std::abs(a.forces.F2 - l.forces.F2)));
+    };
+    float_force.see(error(f), u1, u2);
+    double_force.see(error(d), u1, u2);
+  }
+  float_status.claim("V-CELL-23", 0, "states that do not converge in some real type");
+  // Forces of up to 1 kN are made of terms EA/l0 u = 1 kN, a few roundings each.
+  float_force.claim("V-CELL-23", 20.0 * std::numeric_limits<float>::epsilon(),
+                    "float forces, strains of a drape [kN]");
+  double_force.claim("V-CELL-23", 20.0 * std::numeric_limits<double>::epsilon(),
+                     "double forces, strains of a drape [kN]");
+}
+
+namespace {
+
+/// Lanes against scalars: bit for bit with a fixed number of sweeps; to `tolerance` when converged,
+/// because a lane keeps sweeping until the last one is done.
+template <class S, int N>
+void compare_lanes(verify::Random& random, bool bending, verify::Worst& fixed,
+                   verify::Worst& iterated, double tolerance_of_forces) {
+  using P = Pack<S, N>;
+  Parameters p = verify::table_1();
+  if (!bending) p = verify::table_1_without_bending();
+  const crossbeam::CrossedBeamCell<S> cell(verify::converted<S>(p));
+  for (int sample = 0; sample < 300; ++sample) {
+    P u1, u2;
+    for (int i = 0; i < N; ++i) {
+      u1.set(i, S(2.5 * random.uniform(-0.03, 0.03)));
+      u2.set(i, S(2.5 * random.uniform(-0.03, 0.03)));
+    }
+    const auto three = cell.solve(u1, u2, SolverControl::fixed(3));
+    const auto full = cell.solve(u1, u2);
+    REQUIRE(full.status == CellStatus::converged);
+    for (int i = 0; i < N; ++i) {
+      const auto lane = cell.solve(u1[i], u2[i], SolverControl::fixed(3));
+      const auto alone = cell.solve(u1[i], u2[i]);
+      fixed.see(three.forces.F1[i] == lane.forces.F1 && three.forces.F2[i] == lane.forces.F2 &&
+                        three.forces.q[i] == lane.forces.q
+                    ? 0
+                    : 1,
+                "u =", u1[i], u2[i]);
+      iterated.see(std::max(std::abs(full.forces.F1[i] - alone.forces.F1),
+                            std::abs(full.forces.F2[i] - alone.forces.F2)) /
+                       tolerance_of_forces,
+                   "u =", u1[i], u2[i]);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("V-CELL-24 every lane of a pack answers as the scalar does") {
+  VERIFY_RANDOM(random, 2024);
+  verify::Worst fixed, iterated;
+  for (const bool bending : {true, false}) {
+    compare_lanes<double, 4>(random, bending, fixed, iterated,
+                             20 * std::numeric_limits<double>::epsilon());
+    compare_lanes<float, 8>(random, bending, fixed, iterated,
+                            20.0 * std::numeric_limits<float>::epsilon());
+  }
+  // The same correctly rounded operations in the same order: nothing may differ.
+  fixed.claim("V-CELL-24", 0, "lanes that differ in any bit after three sweeps");
+  iterated.claim("V-CELL-24", 1, "converged lanes, in units of 20 roundings of 1 kN");
+}
+
+TEST_SUITE_END();
