@@ -1,0 +1,126 @@
+/// @file
+/// One whole step of the explicit scheme (forces, velocities, positions) on a flat taut sheet that
+/// vibrates: no contact. Options are left out one at a time from what the scene `realistic` uses.
+///
+///   step/<elements>/<options>/<number>
+
+#include "support/fabric.hpp"
+#include "support/report.hpp"
+
+#include "crossbeam/dynamics/bending_sweep.hpp"
+#include "crossbeam/dynamics/central_difference.hpp"
+#include "crossbeam/dynamics/membrane_sweep.hpp"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+
+namespace bench {
+namespace {
+
+using crossbeam::CentralDifference;
+using crossbeam::NativePack;
+using crossbeam::NodalState;
+using crossbeam::Pack;
+using crossbeam::real_t;
+using crossbeam::SolverControl;
+
+struct Sheet {
+  int nx, ny;
+  [[nodiscard]] int elements() const { return nx * ny; }
+};
+
+struct Options {
+  int points = 1;  ///< 1 or 4
+  bool bending = true, viscosity = true, hourglass = true;
+};
+
+/// A sheet of 5 mm elements, stretched by 0.5 % and held along its edges, with a smooth speed out
+/// of its plane: taut, moving, and far from the tiny numbers that slow a processor down.
+template <class T>
+CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options) {
+  using R = real_t<T>;
+  const double edge = 5, width = edge * sheet.nx, length = edge * sheet.ny, prestretch = 1.005;
+  const auto mesh = crossbeam::rectangle(width, length, sheet.nx, sheet.ny);
+  std::vector<crossbeam::NodeConstraint> held;
+  for (int n = 0; n < mesh.node_count; ++n) {
+    const auto X = mesh.nodes.get(n);
+    if (X.x == 0 || X.x == width || X.y == 0 || X.y == length) held.push_back({n, true, true, true});
+  }
+  NodalState<R> state(mesh, areal_mass, held);
+  for (int n = 0; n < mesh.node_count; ++n) {
+    const auto X = mesh.nodes.get(n);
+    state.x.set(n, {R(prestretch * X.x), R(prestretch * X.y), R(0)});
+    const double wave = std::sin(std::numbers::pi * X.x / width) *
+                        std::sin(std::numbers::pi * X.y / length);
+    state.v.set(n, {R(0), R(0), R(wave) * state.free.z[static_cast<std::size_t>(n)]});
+  }
+  CentralDifference<T> integrator(std::move(state), areal_mass);
+  const auto law =
+      membrane(crossbeam::CrossedBeamCell<R>(cell_parameters<R>()), measured_shear<R>(),
+               SolverControl::fixed(3));
+  const crossbeam::MembraneOptions membrane_options{options.hourglass ? hourglass_modulus : 0,
+                                                    options.viscosity ? bulk_viscosity : 0};
+  const auto add_membrane = [&]<int points>() {
+    using Block =
+        crossbeam::MembraneSweep<T, crossbeam::Quadrilateral<points>, std::decay_t<decltype(law)>>;
+    integrator.add(std::make_unique<Block>(mesh, law, areal_mass, membrane_options));
+  };
+  if (options.points == 1)
+    add_membrane.template operator()<1>();
+  else
+    add_membrane.template operator()<4>();
+  if (options.bending)
+    integrator.add(std::make_unique<crossbeam::BendingSweep<T>>(
+        mesh, crossbeam::BendingStiffness{bending_stiffness, bending_stiffness}, areal_mass));
+  integrator.start(0.9 * integrator.critical_step());
+  for (int n = 0; n < 3; ++n) integrator.step();  // the first also evaluates the energy
+  return integrator;
+}
+
+/// The sheet is set up at the first of a benchmark's repetitions and keeps vibrating in the others.
+template <class T>
+void register_step(const Sheet& sheet, const std::string& what, const Options& options) {
+  const std::string name =
+      "step/" + std::to_string(sheet.elements()) + "/" + what + "/" + number_name<T>();
+  const auto integrator = std::make_shared<std::unique_ptr<CentralDifference<T>>>();
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    if (!*integrator)
+      *integrator = std::make_unique<CentralDifference<T>>(vibrating_sheet<T>(sheet, options));
+    for (auto _ : state) (*integrator)->step();
+    report(state, sheet.elements(), "time_per_element_step");
+  })->Unit(benchmark::kMicrosecond);
+}
+
+template <class T>
+void register_options(const Sheet& sheet) {
+  register_step<T>(sheet, "full", {});
+  register_step<T>(sheet, "no_bending", {.bending = false});
+  register_step<T>(sheet, "no_viscosity", {.viscosity = false});
+  register_step<T>(sheet, "no_hourglass", {.hourglass = false});
+  register_step<T>(sheet, "bare", {.bending = false, .viscosity = false, .hourglass = false});
+  register_step<T>(sheet, "4_points", {.points = 4, .hourglass = false});
+  register_step<T>(sheet, "4_points_bare",
+                   {.points = 4, .bending = false, .viscosity = false, .hourglass = false});
+}
+
+[[maybe_unused]] const bool registered = [] {
+  record_build();
+  const Sheet dome{26, 50}, medium{100, 200}, large{260, 500};
+  for (const Sheet& sheet : {dome, medium}) {
+    register_options<NativePack<double>>(sheet);
+    register_options<NativePack<float>>(sheet);
+  }
+  for (const char* what : {"full", "bare"}) {
+    const bool full = std::string(what) == "full";
+    const Options options{.bending = full, .viscosity = full, .hourglass = full};
+    register_step<NativePack<double>>(large, what, options);
+    register_step<NativePack<float>>(large, what, options);
+    register_step<Pack<double, 1>>(dome, what, options);
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace bench

@@ -1,0 +1,63 @@
+#pragma once
+/// @file
+/// The inputs: a ring of random states with a fixed seed, gone through again and again. Long enough
+/// that no branch predictor learns it, short enough that it stays in the first-level cache.
+
+#include "crossbeam/base/scalar.hpp"
+#include "crossbeam/kinematics/fibre_frame.hpp"
+#include "crossbeam/mesh/arrays.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace bench {
+
+inline constexpr int ring_size = 512;  ///< a multiple of every pack width
+
+/// Uniform numbers, the same with every standard library.
+class Uniform {
+ public:
+  explicit Uniform(std::uint64_t seed) : engine_(seed) {}
+  double operator()(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Yarn elongations from -2 to 3 % and shear angles up to 0.7 rad, fibres perpendicular at first.
+template <class R>
+struct Ring {
+  crossbeam::AlignedArray<R> b11, b22, b12;  ///< fibre strains
+  crossbeam::AlignedArray<R> u1, u2;         ///< the same elongations of Table 1's cell [mm]
+  /// Corners of a deformed square element of edge 1 mm, turned in space [mm].
+  std::array<crossbeam::NodeVectors<R>, 4> corner;
+
+  Ring() {
+    for (auto* a : {&b11, &b22, &b12, &u1, &u2}) a->resize(ring_size);
+    corner.fill(crossbeam::NodeVectors<R>(ring_size));
+    Uniform random(20261122);
+    for (std::size_t k = 0; k < ring_size; ++k) {
+      const double e1 = random(-0.02, 0.03), e2 = random(-0.02, 0.03), g = random(-0.7, 0.7);
+      const double l1 = 1 + e1, l2 = 1 + e2, length = 2.5;
+      b11[k] = R(0.5 * (l1 * l1 - 1));
+      b22[k] = R(0.5 * (l2 * l2 - 1));
+      b12[k] = R(0.5 * l1 * l2 * std::sin(g));
+      u1[k] = R(length * e1);
+      u2[k] = R(length * e2);
+      // Warp in the plane turned by `tilt` about y, weft at the sheared angle in that plane.
+      const double tilt = random(-1, 1), c = std::cos(tilt), s = std::sin(tilt);
+      const crossbeam::Vec3<double> warp{l1 * c, 0, l1 * s};
+      const crossbeam::Vec3<double> weft{l2 * std::sin(g) * c, l2 * std::cos(g),
+                                         l2 * std::sin(g) * s};
+      const crossbeam::Vec3<double> x[4] = {{}, warp, warp + weft, weft};
+      for (std::size_t a = 0; a < 4; ++a)
+        corner[a].set(static_cast<int>(k), {R(x[a].x), R(x[a].y), R(x[a].z)});
+    }
+  }
+};
+
+}  // namespace bench
