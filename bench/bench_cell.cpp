@@ -21,7 +21,6 @@ namespace {
 
 using crossbeam::CrossedBeamCell;
 using crossbeam::Dual;
-using crossbeam::passive_t;
 using crossbeam::real_t;
 using crossbeam::SecondOrderCell;
 using crossbeam::SolverControl;
@@ -35,8 +34,8 @@ void time_cells(benchmark::State& state, const Kernel& kernel) {
       if constexpr (crossbeam::ScalarTraits<T>::derivative_order == 0)
         benchmark::DoNotOptimize(kernel(load<T>(ring.u1, k), load<T>(ring.u2, k)));
       else
-        benchmark::DoNotOptimize(kernel(load_variable<T>(ring.u1, k, 0),
-                                        load_variable<T>(ring.u2, k, 1)));
+        benchmark::DoNotOptimize(
+            kernel(load_variable<T>(ring.u1, k, 0), load_variable<T>(ring.u2, k, 1)));
     }
   report(state, ring_size, "time_per_cell");
 }
@@ -55,26 +54,24 @@ void register_energy_cell(const std::string& iterated, SolverControl control) {
     return std::string("cell/") + what + "/energy_cell/" + iterated + "/" + number_name<T>();
   };
   const auto add = [&](const char* what, auto kernel) {
-    benchmark::RegisterBenchmark(name(what).c_str(), [kernel](benchmark::State& state) {
-      time_cells<T>(state, kernel);
-    });
+    benchmark::RegisterBenchmark(
+        name(what).c_str(), [kernel](benchmark::State& state) { time_cells<T>(state, kernel); });
   };
-  add("energy", [=](const T& u1, const T& u2) {
-    return cell.energy(u1, u2, cell.solve(u1, u2, control));
-  });
+  add("energy",
+      [=](const T& u1, const T& u2) { return cell.energy(u1, u2, cell.solve(u1, u2, control)); });
   add("forces", [=](const T& u1, const T& u2) { return cell.solve(u1, u2, control).forces; });
   add("forces_and_tangent", [=](const T& u1, const T& u2) {
     const auto solution = cell.solve(u1, u2, control);
     return ForcesAndTangent<T>{solution.forces, cell.tangent(u1, u2, solution)};
   });
   using D = Dual<T, 2>;
-  benchmark::RegisterBenchmark(
-      name("forces_and_tangent_autodiff").c_str(), [=](benchmark::State& state) {
-        time_cells<D>(state, [&](const D& u1, const D& u2) {
-          const auto forces = cell.solve(u1, u2, control).forces;
-          return crossbeam::Vector2<D>(forces.F1, forces.F2);
-        });
-      });
+  benchmark::RegisterBenchmark(name("forces_and_tangent_autodiff").c_str(),
+                               [=](benchmark::State& state) {
+                                 time_cells<D>(state, [&](const D& u1, const D& u2) {
+                                   const auto forces = cell.solve(u1, u2, control).forces;
+                                   return crossbeam::Vector2<D>(forces.F1, forces.F2);
+                                 });
+                               });
 }
 
 template <class T>
@@ -84,8 +81,7 @@ void register_second_order_cell() {
   benchmark::RegisterBenchmark(
       ("cell/forces/second_order_cell/converged/" + number_name<T>()).c_str(),
       [=](benchmark::State& state) {
-        time_cells<T>(state,
-                      [&](const T& u1, const T& u2) { return cell.solve(u1, u2).forces; });
+        time_cells<T>(state, [&](const T& u1, const T& u2) { return cell.solve(u1, u2).forces; });
       });
 }
 

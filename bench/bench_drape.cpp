@@ -9,6 +9,9 @@
 #include "drape.hpp"
 #include "scene.hpp"
 
+#include <string>
+#include <tuple>
+
 namespace bench {
 namespace {
 

@@ -15,6 +15,8 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace bench {
 namespace {
@@ -46,20 +48,20 @@ CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options)
   std::vector<crossbeam::NodeConstraint> held;
   for (int n = 0; n < mesh.node_count; ++n) {
     const auto X = mesh.nodes.get(n);
-    if (X.x == 0 || X.x == width || X.y == 0 || X.y == length) held.push_back({n, true, true, true});
+    if (X.x == 0 || X.x == width || X.y == 0 || X.y == length)
+      held.push_back({n, true, true, true});
   }
   NodalState<R> state(mesh, areal_mass, held);
   for (int n = 0; n < mesh.node_count; ++n) {
     const auto X = mesh.nodes.get(n);
     state.x.set(n, {R(prestretch * X.x), R(prestretch * X.y), R(0)});
-    const double wave = std::sin(std::numbers::pi * X.x / width) *
-                        std::sin(std::numbers::pi * X.y / length);
+    const double wave =
+        std::sin(std::numbers::pi * X.x / width) * std::sin(std::numbers::pi * X.y / length);
     state.v.set(n, {R(0), R(0), R(wave) * state.free.z[static_cast<std::size_t>(n)]});
   }
   CentralDifference<T> integrator(std::move(state), areal_mass);
-  const auto law =
-      membrane(crossbeam::CrossedBeamCell<R>(cell_parameters<R>()), measured_shear<R>(),
-               SolverControl::fixed(3));
+  const auto law = membrane(crossbeam::CrossedBeamCell<R>(cell_parameters<R>()),
+                            measured_shear<R>(), SolverControl::fixed(3));
   const crossbeam::MembraneOptions membrane_options{options.hourglass ? hourglass_modulus : 0,
                                                     options.viscosity ? bulk_viscosity : 0};
   const auto add_membrane = [&]<int points>() {
