@@ -37,6 +37,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     law.yarn_energy(law.evaluate(b));
   };
 
+  /// A law of one's own need not have a cell; then there is nothing of a cell to sample.
+  static constexpr bool has_cell = requires(const Law& law) { law.cell().parameters(); };
+
   /// @throws InputError when the fibre angle of an element differs from the law's.
   MembraneSweep(const Mesh<corners>& mesh, Law law, double areal_mass,
                 const MembraneOptions& options = {})
@@ -112,10 +115,6 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   void sample(const NodalState<R>& state, std::vector<ElementSample>& out) const override {
     const std::size_t offset = out.size();
     out.resize(offset + static_cast<std::size_t>(element_count_));
-    const auto& cell_parameters = law_.cell().parameters();
-    const double H1 = static_cast<double>(cell_parameters.warp_height_fraction *
-                                          cell_parameters.contact_length);
-    const double H2 = static_cast<double>(cell_parameters.contact_length) - H1;
     const double share = 1.0 / Element::points;
     for (int b = 0; b < batches_.size(); ++b) {
       const auto& batch = batches_[b];
@@ -135,21 +134,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
           s.shear_angle += share * static_cast<double>(gamma[l]);
           const double lambda[2] = {static_cast<double>(at.fibres.lambda1[l]),
                                     static_cast<double>(at.fibres.lambda2[l])};
-          const double w[2] = {static_cast<double>(at.cell.forces.w1[l]),
-                               static_cast<double>(at.cell.forces.w2[l])};
           for (int i = 0; i < 2; ++i) {
             s.stretch[i] += share * (lambda[i] - 1);
             s.tension[i] += share * static_cast<double>(tension(i)[l]);
-            s.crimp_height[i] += share * ((i == 0 ? H1 : H2) + w[i]);
           }
-          const double q = static_cast<double>(at.cell.forces.q[l]);
-          s.contact_force += share * q;
-          s.slack = s.slack || !(q > 0);
-          if constexpr (has_energy)
-            s.cell_correction =
-                std::max(s.cell_correction, static_cast<double>(at.cell.last_correction[l]));
-          else
-            s.fallback = s.fallback || at.cell.fallback[l] > R(0);
+          if constexpr (has_cell) sample_cell(at, l, s);
           const auto unit = [&](const Vec3<T>& f, double length) {
             return (share / length) * Vec3<double>{static_cast<double>(f.x[l]),
                                                    static_cast<double>(f.y[l]),
@@ -165,6 +154,24 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
  private:
   using Batch = typename IndexBatches<corners, T>::Batch;
   static constexpr int hourglass_at = Element::points * point_size;  // p1, p2, stiffness
+
+  template <class State>
+  void sample_cell(const State& at, int lane, ElementSample& s) const {
+    constexpr double share = 1.0 / Element::points;
+    const auto& cell = law_.cell().parameters();
+    const double H1 = static_cast<double>(cell.warp_height_fraction * cell.contact_length);
+    const double H2 = static_cast<double>(cell.contact_length) - H1;
+    s.crimp_height[0] += share * (H1 + static_cast<double>(at.cell.forces.w1[lane]));
+    s.crimp_height[1] += share * (H2 + static_cast<double>(at.cell.forces.w2[lane]));
+    const double q = static_cast<double>(at.cell.forces.q[lane]);
+    s.contact_force += share * q;
+    s.slack = s.slack || !(q > 0);
+    if constexpr (has_energy)
+      s.cell_correction =
+          std::max(s.cell_correction, static_cast<double>(at.cell.last_correction[lane]));
+    else
+      s.fallback = s.fallback || at.cell.fallback[lane] > R(0);
+  }
 
   template <bool Viscous>
   void sweep(NodalState<R>& state, double dt) {

@@ -57,8 +57,7 @@ inline std::vector<StencilWeight> second_difference(int centre,
     front = std::max(front, n.along);
     back = std::min(back, n.along);
   }
-  const int count = static_cast<int>(ring.size());
-  if (count < 5 || front < 0.3 * size || back > -0.3 * size) return {};
+  if (ring.size() < 5 || front < 0.3 * size || back > -0.3 * size) return {};
   double left = 0, right = 0;
   for (const auto& n : ring) {
     left = std::max(left, n.across);
@@ -67,21 +66,25 @@ inline std::vector<StencilWeight> second_difference(int centre,
   if (left < 0.3 * size || right > -0.3 * size) return {};
 
   // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn, n^2.
-  Eigen::MatrixXd P(5, count);
-  Eigen::VectorXd v(count);
-  for (int k = 0; k < count; ++k) {
+  using Monomials = Eigen::Matrix<double, 5, 1>;
+  std::vector<Monomials> p(ring.size());
+  std::vector<double> v(ring.size());
+  Eigen::Matrix<double, 5, 5> gram = Eigen::Matrix<double, 5, 5>::Zero();
+  for (std::size_t k = 0; k < ring.size(); ++k) {
     const double s = ring[k].along / size, n = ring[k].across / size;
-    P.col(k) << s, n, s * s, s * n, n * n;
-    v(k) = 1 / ((n * n + 1e-3) * (n * n + 1e-3));
+    p[k] << s, n, s * s, s * n, n * n;
+    v[k] = 1 / ((n * n + 1e-3) * (n * n + 1e-3));
+    gram += v[k] * p[k] * p[k].transpose();
   }
-  Eigen::VectorXd wanted = Eigen::VectorXd::Zero(5);
-  wanted(2) = 2;
-  const Eigen::MatrixXd gram = P * v.asDiagonal() * P.transpose();
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(gram);
+  const Eigen::FullPivLU<Eigen::Matrix<double, 5, 5>> lu(gram);
   if (lu.rank() < 5) return {};
-  const Eigen::VectorXd w = v.asDiagonal() * (P.transpose() * lu.solve(wanted)) / (size * size);
-  std::vector<StencilWeight> out{{centre, -w.sum()}};
-  for (int k = 0; k < count; ++k) out.push_back({ring[k].id, w(k)});
+  const Monomials multiplier = lu.solve(2 * Monomials::Unit(2)) / (size * size);
+  std::vector<StencilWeight> out{{centre, 0.0}};
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const double w = v[k] * p[k].dot(multiplier);
+    out[0].weight -= w;
+    out.push_back({ring[k].id, w});
+  }
   return out;
 }
 

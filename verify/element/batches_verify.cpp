@@ -1,0 +1,162 @@
+// The sweep gives the same forces whatever fills its lanes: any width, the contiguous and the gather
+// path, full and partial batches, float and double.
+
+#include "element/patches.hpp"
+#include "support/claim.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace patches;
+using verify::Worst;
+
+constexpr int nx = 5, ny = 11;  // columns of 11: no multiple of any width, so the last batch is partial
+
+template <class R>
+WovenMembrane<CrossedBeamCell<R>, PolynomialShear<R>> fabric_in() {
+  const FibreAngle<R> angle = FibreAngle<R>::right();
+  return {CrossedBeamCell<R>(CellParameters<R>{}),
+          PolynomialShear<R>(PolynomialCurve<R>({R(0.051e-3), R(-0.83e-3), R(6.1275e-3),
+                                                 R(-12.0972e-3), R(8.48e-3)}),
+                             angle),
+          angle};
+}
+
+struct Answer {
+  Points f;
+  double energy = 0;
+  std::vector<double> shear;
+};
+
+template <class T>
+NodalState<real_t<T>> state_in(const Mesh<4>& m, const Points& x, const Points& v) {
+  using R = real_t<T>;
+  const auto real = [](const Eigen::Vector3d& p) {
+    return Vec3<R>{R(p.x()), R(p.y()), R(p.z())};
+  };
+  NodalState<R> state(m, areal_mass);
+  for (int n = 0; n < m.node_count; ++n) {
+    state.x.set(n, real(x[n]));
+    state.v.set(n, real(v[n]));
+    state.v_centre.set(n, real(v[n]));
+  }
+  return state;
+}
+
+template <class T, class Element>
+Answer answer(const Mesh<4>& m, const Points& x, const Points& v, bool bending) {
+  using R = real_t<T>;
+  auto state = state_in<T>(m, x, v);
+  const auto law = fabric_in<R>();
+  MembraneSweep<T, Element, std::decay_t<decltype(law)>> sweep(m, law, areal_mass, {0.01, 0.06});
+  sweep.add_forces(state, 1.0);
+  InternalEnergy e;
+  sweep.add_energy(state, e);
+  if (bending) {
+    BendingSweep<T> bend(m, {1.4e-3, 2e-3}, areal_mass);
+    bend.add_forces(state, 1.0);
+    bend.add_energy(state, e);
+  }
+  Answer out;
+  for (int n = 0; n < m.node_count; ++n) {
+    const auto f = state.f.get(n);
+    out.f.push_back({double(f.x), double(f.y), double(f.z)});
+  }
+  out.energy = e.stored() + e.bulk_viscosity;
+  std::vector<ElementSample> samples;
+  sweep.sample(state, samples);
+  for (const auto& s : samples) out.shear.push_back(s.shear_angle);
+  return out;
+}
+
+struct Scene {
+  Mesh<4> rows, shuffled;
+  std::vector<std::size_t> order;  // of the shuffled elements
+  Points x, v;
+};
+
+Scene scene(verify::Random& random) {
+  const Points X = grid(nx, ny, 5, 0.2, random);
+  const auto elements = cells<4>(nx, ny);
+  std::vector<std::size_t> order(elements.size());
+  for (std::size_t e = 0; e < order.size(); ++e) order[e] = e;
+  for (std::size_t e = order.size(); e > 1; --e)
+    std::swap(order[e - 1], order[static_cast<std::size_t>(random.uniform(0, double(e)))]);
+  std::vector<std::array<int, 4>> mixed;
+  for (std::size_t e : order) mixed.push_back(elements[e]);
+  Points x = X, v = X;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    x[n] += random.vector(0.2);
+    v[n] = random.vector(2);
+  }
+  return {mesh<4>(X, elements, 0.3, pi / 2), mesh<4>(X, mixed, 0.3, pi / 2), order, x, v};
+}
+
+template <class T>
+int contiguous_batches(const Mesh<4>& m) {
+  const IndexBatches<4, T> batches(m.elements);
+  int count = 0;
+  for (int b = 0; b < batches.size(); ++b) count += batches[b].gather_row < 0;
+  return count;
+}
+
+double difference(const Answer& a, const Answer& b) {
+  double worst = 0;
+  for (std::size_t n = 0; n < a.f.size(); ++n) worst = std::max(worst, (a.f[n] - b.f[n]).norm());
+  return std::max(worst / largest(a.f), std::abs(a.energy / b.energy - 1));
+}
+
+}  // namespace
+
+TEST_SUITE("element") {
+
+TEST_CASE("V-ELEM-06 batches: every width, path and filling of the lanes gives the same forces") {
+  VERIFY_RANDOM(random, 106);
+  const Scene s = scene(random);
+  Worst in_double, in_float, samples;
+  const auto with = [&]<class T, class Element>(const Answer& reference, Worst& worst,
+                                                const char* name) {
+    for (bool shuffled : {false, true}) {
+      const Mesh<4>& m = shuffled ? s.shuffled : s.rows;
+      if (lanes_v<T> > 2) {
+        const IndexBatches<4, T> batches(m.elements);
+        REQUIRE((contiguous_batches<T>(m) > 0) == !shuffled);  // both paths are taken
+        bool partial = false;
+        for (int b = 0; b < batches.size(); ++b) partial |= batches[b].active < lanes_v<T>;
+        REQUIRE(partial);
+      }
+      const Answer now = answer<T, Element>(m, s.x, s.v, true);
+      worst.see(difference(reference, now), name, lanes_v<T>, shuffled ? "shuffled" : "rows");
+      for (std::size_t e = 0; e < now.shear.size(); ++e)
+        if (sizeof(real_t<T>) == 8)
+          samples.see(std::abs(now.shear[e] - reference.shear[shuffled ? s.order[e] : e]), name,
+                      lanes_v<T>, shuffled ? "shuffled" : "rows", e);
+    }
+  };
+  const auto widths = [&]<class Element>(const char* name) {
+    const Answer reference = answer<Pack<double, 1>, Element>(s.rows, s.x, s.v, true);
+    REQUIRE(largest(reference.f) > 0.1);
+    with.template operator()<Pack<double, 1>, Element>(reference, in_double, name);
+    with.template operator()<Pack<double, 2>, Element>(reference, in_double, name);
+    with.template operator()<Pack<double, 4>, Element>(reference, in_double, name);
+    with.template operator()<Pack<double, 8>, Element>(reference, in_double, name);
+    with.template operator()<NativePack<float>, Element>(reference, in_float, name);
+    with.template operator()<Pack<float, 4>, Element>(reference, in_float, name);
+  };
+  widths.template operator()<Quadrilateral<1>>("1 point");
+  widths.template operator()<Quadrilateral<4>>("2x2 points");
+  // Lanes compute like scalars; only the order in which elements add to a node differs: a few
+  // roundings of the largest force. The cell is iterated until its slowest lane has converged, so a
+  // lane may get one sweep more: its error is the square of 1e-12.
+  in_double.claim("V-ELEM-06", 5e-15, "double, any width against one lane, relative");
+  samples.claim("V-ELEM-06", 1e-15, "shear angles, and in the order of the elements [rad]");
+  // Coordinates of 50 mm on 5 mm edges round the strain to 6e-7, of strains of order 0.05.
+  in_float.claim("V-ELEM-06", 1e-4, "float against double, relative");
+}
+
+}  // TEST_SUITE
