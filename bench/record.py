@@ -118,7 +118,7 @@ def read(files):
                 entry["ns"] = round(1e9 * time, 3)
             elif row["aggregate_name"] == "cv":
                 entry["cv"] = round(time, 4)
-    return context, results
+    return context, dict(sorted(results.items()))
 
 
 def main():

@@ -1,9 +1,9 @@
 #pragma once
 /// @file
 /// The yardstick: the paper's model programmed the way one reads it, equation by equation in plain
-/// scalar Eigen, with the reference quantities computed where the equations use them. Nothing in
-/// the library calls it. It is exact where the library's second-order cell is, and every benchmark
-/// that times it first checks that.
+/// scalar Eigen. The cell's constants are computed once, as anyone would; the rest where the
+/// equations use it. Nothing in the library calls it. Its answers are those of the library's
+/// second-order cell, and every benchmark that times it first checks that.
 
 #include "crossbeam/cell/parameters.hpp"
 
@@ -24,8 +24,23 @@ enum class Solver {
   inverse_2x2  ///< only the two heights, by the explicit inverse
 };
 
+/// A yarn's unstressed chord (length, cosine, sine; the sine negative for the yarn below) and its
+/// stiffnesses along and across it.
 struct Yarn {
-  double EA, EI, L, H;
+  double l0, c, s, along, across;
+
+  Yarn(const crossbeam::YarnParameters<double>& y, double height, double boundary_factor)
+      : l0(std::hypot(y.length, height)), c(y.length / l0), s(height / l0) {
+    along = y.youngs_modulus * y.cross_section / l0;
+    across = boundary_factor * y.youngs_modulus * y.second_moment_of_area / (l0 * l0 * l0);
+  }
+
+  /// A stiffness along and one across the chord, turned to horizontal and vertical.
+  [[nodiscard]] Eigen::Matrix2d turned(double k_along, double k_across) const {
+    Eigen::Matrix2d T;
+    T << c, s, -s, c;
+    return T.transpose() * Eigen::Vector2d(k_along, k_across).asDiagonal() * T;
+  }
 };
 
 /// Eq. 24-25. Displacements (u1, u2, u3, u4): the master nodes along their yarns, the crossing
@@ -33,17 +48,21 @@ struct Yarn {
 class Cell {
  public:
   explicit Cell(const crossbeam::CellParameters<double>& p)
-      : warp_(yarn(p.warp, p.warp_height_fraction * p.contact_length)),
-        weft_(yarn(p.weft, (1 - p.warp_height_fraction) * p.contact_length)),
-        k3_(p.contact_modulus * p.contact_area / p.contact_length),
-        boundary_(p.bending_boundary_factor) {}
+      : warp_(p.warp, p.warp_height_fraction * p.contact_length, p.bending_boundary_factor),
+        weft_(p.weft, -(1 - p.warp_height_fraction) * p.contact_length, p.bending_boundary_factor) {
+    const double k3 = p.contact_modulus * p.contact_area / p.contact_length;
+    K_E_ =
+        assembled(warp_.turned(warp_.along, warp_.across), weft_.turned(weft_.along, weft_.across));
+    K_E_.bottomRightCorner<2, 2>() += (Eigen::Matrix2d() << k3, -k3, -k3, k3).finished();
+    tolerance_ = 1e-13 * warp_.along;
+  }
 
   /// Forces (F_warp, F_weft).
   template <Solver solver>
   [[nodiscard]] Eigen::Vector2d forces(const Eigen::Vector2d& u) const {
     Eigen::Vector2d F = Eigen::Vector2d::Zero();
     for (int iteration = 0; iteration < 50; ++iteration) {
-      const Eigen::Matrix4d K = elastic_stiffness() + geometric_stiffness(F);
+      const Eigen::Matrix4d K = K_E_ + geometric_stiffness(F);
       Eigen::Vector4d x;
       if constexpr (solver == Solver::lu_4x4) {
         Eigen::Matrix4d held = K;
@@ -56,55 +75,30 @@ class Cell {
       const Eigen::Vector2d next = K.topRows<2>() * x;
       const double change = (next - F).lpNorm<Eigen::Infinity>();
       F = next;
-      if (change <= 1e-13 * warp_.EA) break;
+      if (change <= tolerance_) break;
     }
     return F;
   }
 
  private:
-  static Yarn yarn(const crossbeam::YarnParameters<double>& y, double height) {
-    return {y.youngs_modulus * y.cross_section, y.youngs_modulus * y.second_moment_of_area,
-            y.length, height};
-  }
-
-  /// Stiffnesses along and across a yarn's chord, turned to horizontal and vertical.
-  static Eigen::Matrix2d turned(const Yarn& y, double along, double across, double up) {
-    const double l0 = std::hypot(y.L, y.H), c = y.L / l0, s = up * y.H / l0;
-    Eigen::Matrix2d T;
-    T << c, s, -s, c;
-    return T.transpose() * Eigen::Vector2d(along, across).asDiagonal() * T;
-  }
-
-  /// Adds the two beams and, where given, the contact beam between the crossing nodes.
-  static Eigen::Matrix4d assembled(const Eigen::Matrix2d& warp, const Eigen::Matrix2d& weft,
-                                   double contact) {
+  /// The warp works on (u1, u3), the weft on (u2, u4).
+  static Eigen::Matrix4d assembled(const Eigen::Matrix2d& warp, const Eigen::Matrix2d& weft) {
     Eigen::Matrix4d K = Eigen::Matrix4d::Zero();
-    const int dofs[2][2] = {{0, 2}, {1, 3}};
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
-        K(dofs[0][i], dofs[0][j]) += warp(i, j);
-        K(dofs[1][i], dofs[1][j]) += weft(i, j);
-        K(2 + i, 2 + j) += i == j ? contact : -contact;
+        K(2 * i, 2 * j) = warp(i, j);
+        K(2 * i + 1, 2 * j + 1) = weft(i, j);
       }
     return K;
   }
 
-  [[nodiscard]] Eigen::Matrix4d elastic_stiffness() const {
-    const auto beam = [this](const Yarn& y, double up) {
-      const double l0 = std::hypot(y.L, y.H);
-      return turned(y, y.EA / l0, boundary_ * y.EI / (l0 * l0 * l0), up);
-    };
-    return assembled(beam(warp_, 1), beam(weft_, -1), k3_);
-  }
   [[nodiscard]] Eigen::Matrix4d geometric_stiffness(const Eigen::Vector2d& F) const {
-    const auto string = [](const Yarn& y, double force, double up) {
-      return turned(y, 0, force / std::hypot(y.L, y.H), up);
-    };
-    return assembled(string(warp_, F(0), 1), string(weft_, F(1), -1), 0);
+    return assembled(warp_.turned(0, F(0) / warp_.l0), weft_.turned(0, F(1) / weft_.l0));
   }
 
   Yarn warp_, weft_;
-  double k3_, boundary_;
+  Eigen::Matrix4d K_E_;
+  double tolerance_;  ///< of the forces [kN]
 };
 
 /// Eq. 1-20, 26 and 27 at one Gauss point.
