@@ -7,8 +7,10 @@
 #include "crossbeam/element/bending.hpp"
 #include "crossbeam/mesh/batches.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <map>
 #include <set>
 
@@ -36,20 +38,19 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     const std::vector<double> area = mesh.tributary_areas();
     std::vector<double> row_sum(mesh.node_count, 0.0);
     std::map<Key, std::vector<Stencil>> sorted;
-    const std::vector<Surroundings> around = surroundings(mesh);
+    const std::vector<Surroundings> around = surroundings(mesh, planes);
     for (int n = 0; n < mesh.node_count; ++n)
       for (int family = 0; family < 2; ++family) {
         if (!(D[family] > 0)) continue;
-        const auto weights =
-            second_difference(label(n, 0), ring(mesh, around[n], n, family, planes));
+        const auto weights = difference(mesh, around, n, family, planes);
         if (weights.empty()) continue;
         Stencil stencil;
         stencil.stiffness = D[family] * area[n];
-        Key key{weights.size() > 3, {}};
+        Key key{weights.size() > 3, family, {}};
         for (const auto& w : weights) {
           stencil.node.push_back(w.id / 4);
           stencil.weight.push_back(w.weight);
-          key.second.push_back(w.id % 4);
+          key.mirrors.push_back(w.id % 4);
         }
         double sum = 0;
         for (double w : stencil.weight) sum += std::abs(w);
@@ -59,10 +60,10 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         ++count_;
       }
     for (const auto& [key, stencils] : sorted) {
-      if (key.second.size() <= 3)
-        short_.emplace_back(key.second, stencils);
+      if (key.mirrors.size() <= 3)
+        short_.emplace_back(key.mirrors, stencils);
       else
-        long_.emplace_back(key.second, stencils);
+        long_.emplace_back(key.mirrors, stencils);
     }
     for (int n = 0; n < mesh.node_count; ++n)  // Gershgorin
       omega_squared_ = std::max(omega_squared_, row_sum[n] / (area[n] * areal_mass));
@@ -87,29 +88,67 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     std::vector<double> weight;
     double stiffness = 0;  // D A [kN mm^3]
   };
-  // Long or short, and the mirrorings of its columns: bit 0 at x = 0, bit 1 at y = 0.
-  using Key = std::pair<bool, std::vector<int>>;
+  // Stencils that one group holds: of one yarn family, so that they follow each other along a row, and
+  // with the same mirrorings of their columns: bit 0 at x = 0, bit 1 at y = 0.
+  struct Key {
+    bool is_long;
+    int family;
+    std::vector<int> mirrors;
+    auto operator<=>(const Key&) const = default;
+  };
   static int label(int node, int mirror) { return node * 4 + mirror; }
 
   struct Surroundings {
     std::set<int> nodes;
     Vec3<double> warp{}, weft{}, normal{};
+    bool rim = false;  ///< on a free edge
   };
 
   template <int Corners>
-  static std::vector<Surroundings> surroundings(const Mesh<Corners>& mesh) {
+  static std::vector<Surroundings> surroundings(const Mesh<Corners>& mesh,
+                                                const SymmetryPlanes& planes) {
     std::vector<Surroundings> out(mesh.node_count);
+    std::map<std::pair<int, int>, int> edges;  // how many elements have it
     for (int e = 0; e < mesh.element_count(); ++e) {
+      const auto& corners = mesh.elements[e];
       const Vec3<double> normal = cross(mesh.fibres[e].warp, mesh.fibres[e].weft);
-      for (int n : mesh.elements[e]) {
+      for (int a = 0; a < Corners; ++a) {
+        const int n = corners[a], next = corners[(a + 1) % Corners];
         out[n].warp = out[n].warp + mesh.fibres[e].warp;
         out[n].weft = out[n].weft + mesh.fibres[e].weft;
         out[n].normal = out[n].normal + normal;
-        for (int m : mesh.elements[e])
+        for (int m : corners)
           if (m != n) out[n].nodes.insert(m);
+        ++edges[std::minmax(n, next)];
       }
     }
+    for (const auto& [edge, elements] : edges) {
+      const Vec3<double> A = mesh.nodes.get(edge.first), B = mesh.nodes.get(edge.second);
+      const double tolerance = 1e-9 * detail::norm(B - A);
+      const auto zero = [&](double a, double b) {
+        return std::abs(a) <= tolerance && std::abs(b) <= tolerance;
+      };
+      const bool mirrored = (planes.x && zero(A.x, B.x)) || (planes.y && zero(A.y, B.y));
+      if (elements == 1 && !mirrored) out[edge.first].rim = out[edge.second].rim = true;
+    }
     return out;
+  }
+
+  /// A yarn ends at a free edge unless it runs along it. Inside, where no node lies on the yarn's line
+  /// and the elements of a node do not determine the weights, the next ring of nodes helps.
+  template <int Corners>
+  static std::vector<StencilWeight> difference(const Mesh<Corners>& mesh,
+                                               const std::vector<Surroundings>& around, int n,
+                                               int family, const SymmetryPlanes& planes) {
+    auto neighbours = ring(mesh, around[n], n, family, planes);
+    auto weights = three_point_difference(label(n, 0), neighbours);
+    if (!weights.empty() || around[n].rim) return weights;
+    weights = quadratic_difference(label(n, 0), neighbours);
+    if (!weights.empty()) return weights;
+    Surroundings wider = around[n];
+    for (int m : around[n].nodes) wider.nodes.insert(around[m].nodes.begin(), around[m].nodes.end());
+    wider.nodes.erase(n);
+    return quadratic_difference(label(n, 0), ring(mesh, wider, n, family, planes));
   }
 
   /// Neighbours of a node in the frame of one fibre family; beyond a mirror plane, their images.
@@ -138,6 +177,12 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         const Vec3<double> d = Y - X;
         out.push_back({label(m, mirror), dot(d, along), dot(d, across)});
       }
+    if (out.size() >= most) {  // the nearest ones, and room for the centre
+      std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
+        return std::hypot(a.along, a.across) < std::hypot(b.along, b.across);
+      });
+      out.resize(most - 1);
+    }
     return out;
   }
 

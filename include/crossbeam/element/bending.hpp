@@ -27,17 +27,16 @@ struct StencilWeight {
   double weight = 0;  ///< [1/length^2]
 };
 
-/// Weights of the second derivative along the fibre at the centre node (label `centre`).
-///  - Two neighbours on the fibre line itself, one on each side: three-point difference, tag [B-2].
-///  - Otherwise, with neighbours enough: the weights that are exact for every quadratic field and,
-///    among those, closest to the fibre line, tag [B-3].
-///  - Otherwise (a yarn's free end, a free edge it crosses obliquely) nothing: an empty result.
-inline std::vector<StencilWeight> second_difference(int centre,
-                                                    const std::vector<StencilNeighbour>& ring) {
+/// Largest sum of |w| times the ring's radius squared that a stencil may have. Three equidistant
+/// points have 4, good rings below 20; beyond, the ring extrapolates.
+inline constexpr double stencil_limit = 64;
+
+/// Second derivative along the fibre at the centre node (label `centre`) from the nearest node on the
+/// fibre line itself, on each side, tag [B-2]; empty when there is none on one side.
+inline std::vector<StencilWeight> three_point_difference(
+    int centre, const std::vector<StencilNeighbour>& ring) {
   double size = 0;
   for (const auto& n : ring) size = std::max(size, std::hypot(n.along, n.across));
-  if (!(size > 0)) return {};
-
   const StencilNeighbour *ahead = nullptr, *behind = nullptr;
   for (const auto& n : ring) {
     // On the line up to rounding of the mesh coordinates.
@@ -45,30 +44,25 @@ inline std::vector<StencilWeight> second_difference(int centre,
     if (n.along > 0 && (!ahead || n.along < ahead->along)) ahead = &n;
     if (n.along < 0 && (!behind || n.along > behind->along)) behind = &n;
   }
-  if (ahead && behind) {
-    const double a = ahead->along, b = -behind->along;
-    const double wa = 2 / (a * (a + b)), wb = 2 / (b * (a + b));
-    return {{behind->id, wb}, {centre, -(wa + wb)}, {ahead->id, wa}};
-  }
+  if (!ahead || !behind) return {};
+  const double a = ahead->along, b = -behind->along;
+  const double wa = 2 / (a * (a + b)), wb = 2 / (b * (a + b));
+  return {{behind->id, wb}, {centre, -(wa + wb)}, {ahead->id, wa}};
+}
 
-  // One-sided rings would extrapolate: the centre has to lie between its neighbours on the line.
-  double front = 0, back = 0;
-  for (const auto& n : ring) {
-    front = std::max(front, n.along);
-    back = std::min(back, n.along);
-  }
-  if (ring.size() < 5 || front < 0.3 * size || back > -0.3 * size) return {};
-  double left = 0, right = 0;
-  for (const auto& n : ring) {
-    left = std::max(left, n.across);
-    right = std::min(right, n.across);
-  }
-  if (left < 0.3 * size || right > -0.3 * size) return {};
+/// The same from any ring of five nodes or more around the centre: of all weights that are exact for
+/// every quadratic field, those closest to the fibre line, tag [B-3]. Empty when the ring does not
+/// determine them well.
+inline std::vector<StencilWeight> quadratic_difference(int centre,
+                                                       const std::vector<StencilNeighbour>& ring) {
+  double size = 0;
+  for (const auto& n : ring) size = std::max(size, std::hypot(n.along, n.across));
+  if (ring.size() < 5 || !(size > 0)) return {};
 
   // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn, n^2.
   using Monomials = Eigen::Matrix<double, 5, 1>;
   std::vector<Monomials> p(ring.size());
-  std::vector<double> v(ring.size());
+  std::vector<double> v(ring.size()), w(ring.size(), 0.0);
   Eigen::Matrix<double, 5, 5> gram = Eigen::Matrix<double, 5, 5>::Zero();
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const double s = ring[k].along / size, n = ring[k].across / size;
@@ -78,13 +72,25 @@ inline std::vector<StencilWeight> second_difference(int centre,
   }
   const Eigen::FullPivLU<Eigen::Matrix<double, 5, 5>> lu(gram);
   if (lu.rank() < 5) return {};
-  const Monomials multiplier = lu.solve(2 * Monomials::Unit(2)) / (size * size);
-  std::vector<StencilWeight> out{{centre, 0.0}};
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    const double w = v[k] * p[k].dot(multiplier);
-    out[0].weight -= w;
-    out.push_back({ring[k].id, w});
+  // A second pass takes out what the condition of the matrix, 1e6 by the weights v, has left over.
+  Monomials missing = 2 * Monomials::Unit(2);
+  for (int pass = 0; pass < 2; ++pass) {
+    const Monomials multiplier = lu.solve(missing);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const double dw = v[k] * p[k].dot(multiplier);
+      w[k] += dw;
+      missing -= dw * p[k];
+    }
   }
+  std::vector<StencilWeight> out{{centre, 0.0}};
+  double sum = 0;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const double weight = w[k] / (size * size);
+    out[0].weight -= weight;
+    out.push_back({ring[k].id, weight});
+    sum += std::abs(w[k]);
+  }
+  if (!(sum <= stencil_limit)) return {};
   return out;
 }
 
