@@ -22,7 +22,8 @@ struct ShearInput {
   ShearLawKind kind = ShearLawKind::polynomial;
   double modulus = 0.001;                       ///< constant: G12 of Eq. 26 [kN/mm]
   ShearMeasure measure = ShearMeasure::tensor;  ///< constant: S12 = G E12, or G 2 E12
-  std::vector<double> coefficients;  ///< polynomial: G(|g|) = sum c_k |g|^k, g in rad [kN/mm]
+  /// polynomial: G(|g|) = sum c_k |g|^k, g in rad [kN/mm]; by default law A of Twintex
+  std::vector<double> coefficients{0.051e-3, -0.83e-3, 6.1275e-3, -12.0972e-3, 8.48e-3};
   std::vector<double> angle;         ///< tabulated: shear angles, from 0, increasing [rad]
   std::vector<double> traction;      ///< tabulated: shear traction at those angles, from 0 [kN/mm]
 };

@@ -180,17 +180,19 @@ class QuarterDrape {
     const double die_offset = play - half_thickness;
     const auto surface = [&](double offset, Side side) {
       const DoubleDome<double> exact({}, offset);
-      HeightTableGrid<R> grid{R(0), R(140), R(0), R(240), R(case_.contact.table_spacing), true, true};
+      // The tools are flat beyond x = 86 and y = 186 mm.
+      const HeightTableGrid<R> grid{R(0),   R(100), R(0), R(200), R(case_.contact.table_spacing),
+                                    true, true};
       return HeightSurface<HeightTable<R>>(HeightTable<R>(exact, grid), side);
     };
     const auto add = [&](auto shape, ToolMotion motion) {
       integrator_.add(std::make_unique<RigidToolContact<T, decltype(shape)>>(
           std::move(shape), std::move(motion), contact, mesh_.node_count));
     };
-    // The punch's flange plane lies at z = stroke position - depth below the closed position.
-    const double closed = -die_offset, stroke = case_.process.stroke;
+    // Closed, both flange planes coincide; the punch starts with its top level with the die's flange.
+    const double closed = -die_offset, open = closed - DoubleDomeParameters<double>{}.depth;
     add(surface(half_thickness, Side::above),
-        ToolMotion::prescribed([=, p = punch_](double t) { return closed - stroke + p(t); }));
+        ToolMotion::prescribed([=, p = punch_](double t) { return open + p(t); }));
     add(surface(die_offset, Side::below), ToolMotion::prescribed([=](double) { return closed; }));
 
     const StadiumRing<R> ring({}, R(half_thickness));
@@ -242,7 +244,8 @@ class QuarterDrape {
     const double floor = 1e-3 * 0.5 * case_.fabric.areal_mass * case_.blank.half_width *
                          case_.blank.half_length * case_.process.speed * case_.process.speed;
     const double scale = std::abs(row.punch_work) + std::abs(row.holder_work) +
-                         ledger.internal.stored() + row.kinetic;
+                         std::abs(ledger.internal.stored()) + row.kinetic + row.contact +
+                         row.friction + row.contact_damping;
     if (!(std::abs(row.residual) <= 0.05 * scale + floor))
       throw RunError("stroke " + detail::to_text(stroke) +
                      " mm: the energy ledger does not close: residual " +
@@ -341,7 +344,7 @@ class QuarterDrape {
       }
     }
     result_.slack_fraction = slack_area / area;
-    result_.shear_points = shear_points(grid_, points, node_average(grid_, shear));
+    result_.shear_points = shear_points(grid_, points, shear);
     result_.outline = outline(grid_, points);
     result_.draw_in_x = grid_.half_width - points[3 * grid_.node(grid_.nx, 0)];
     result_.draw_in_y = grid_.half_length - points[3 * grid_.node(0, grid_.ny) + 1];

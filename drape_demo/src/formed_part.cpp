@@ -50,6 +50,67 @@ bool locate(const std::array<Point, 4>& q, const Point& p, double& xi, double& e
   return xi > -margin && xi < 1 + margin && eta > -margin && eta < 1 + margin;
 }
 
+/// Cubic convolution (Catmull-Rom) of values on a regular grid, continued beyond its edges along
+/// straight lines: exact for quadratic fields, of third order.
+class GridField {
+ public:
+  /// @param first  material coordinate of the first value, in elements: 0 for nodes, 1/2 for centres
+  /// @param values nu x nv numbers, v running faster, every `stride`-th from `offset` on
+  GridField(int nu, int nv, double first, const std::vector<double>& values, int stride = 1,
+            int offset = 0)
+      : nu_(nu), nv_(nv), first_(first), values_(values), stride_(stride), offset_(offset) {}
+
+  [[nodiscard]] double at(double u, double v) const {
+    const double a = u - first_, b = v - first_;
+    const int i = static_cast<int>(std::floor(a)), j = static_cast<int>(std::floor(b));
+    const std::array<double, 4> wa = weights(a - i), wb = weights(b - j);
+    double sum = 0;
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < 4; ++l) sum += wa[k] * wb[l] * value(i - 1 + k, j - 1 + l);
+    return sum;
+  }
+
+ private:
+  static std::array<double, 4> weights(double t) {
+    return {t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (1.5 * t - 2.5),
+            t * (0.5 + t * (2 - 1.5 * t)), t * t * (0.5 * t - 0.5)};
+  }
+  [[nodiscard]] double value(int i, int j) const {
+    const int i0 = std::clamp(i, 0, std::max(nu_ - 2, 0)), j0 = std::clamp(j, 0, std::max(nv_ - 2, 0));
+    if (nu_ > 1 && (i < 0 || i >= nu_))
+      return value(i0, j) + (i - i0) * (value(i0 + 1, j) - value(i0, j));
+    if (nv_ > 1 && (j < 0 || j >= nv_))
+      return value(i, j0) + (j - j0) * (value(i, j0 + 1) - value(i, j0));
+    const int k = std::clamp(i, 0, nu_ - 1) * nv_ + std::clamp(j, 0, nv_ - 1);
+    return values_[static_cast<std::size_t>(k) * stride_ + offset_];
+  }
+
+  int nu_, nv_;
+  double first_;
+  const std::vector<double>& values_;
+  int stride_, offset_;
+};
+
+/// Moves the material coordinates (u, v) of a first guess to where the smooth map meets p.
+void refine(const GridField& x, const GridField& y, const Point& p, double& u, double& v) {
+  constexpr double step = 1e-5;
+  for (int k = 0; k < 8; ++k) {
+    const Point r{x.at(u, v) - p[0], y.at(u, v) - p[1]};
+    const Point a{(x.at(u + step, v) - x.at(u - step, v)) / (2 * step),
+                  (y.at(u + step, v) - y.at(u - step, v)) / (2 * step)};
+    const Point b{(x.at(u, v + step) - x.at(u, v - step)) / (2 * step),
+                  (y.at(u, v + step) - y.at(u, v - step)) / (2 * step)};
+    const double det = turn(a, b);
+    if (det == 0) return;
+    // A fold of the formed plan could throw the iteration off: never more than half an element.
+    const double du = std::clamp(-turn(r, b) / det, -0.5, 0.5);
+    const double dv = std::clamp(-turn(a, r) / det, -0.5, 0.5);
+    u += du;
+    v += dv;
+    if (std::abs(du) + std::abs(dv) < 1e-10) return;
+  }
+}
+
 }  // namespace
 
 std::vector<double> node_average(const QuarterGrid& grid, const std::vector<double>& on_elements) {
@@ -73,7 +134,7 @@ std::vector<Point> outline(const QuarterGrid& grid, const std::vector<double>& p
 }
 
 std::vector<ShearPoint> shear_points(const QuarterGrid& grid, const std::vector<double>& points,
-                                     const std::vector<double>& node_shear) {
+                                     const std::vector<double>& element_shear) {
   const Point start{0, grid.half_length}, end{grid.half_width, 0};
   const Point along = minus(end, start);
   // Where the line crosses the formed edge; without a crossing the line's own ends count.
@@ -93,6 +154,9 @@ std::vector<ShearPoint> shear_points(const QuarterGrid& grid, const std::vector<
     if (starts_outside) first = *low;
     if (ends_outside) last = *high;
   }
+  const GridField shear(grid.nx, grid.ny, 0.5, element_shear);
+  const GridField x(grid.nx + 1, grid.ny + 1, 0, points, 3, 0);
+  const GridField y(grid.nx + 1, grid.ny + 1, 0, points, 3, 1);
   std::vector<ShearPoint> out;
   for (int k = 0; k < 10; ++k) {
     const double s = first + (last - first) * k / 9;
@@ -108,10 +172,9 @@ std::vector<ShearPoint> shear_points(const QuarterGrid& grid, const std::vector<
         if (!locate({plan(points, n[0]), plan(points, n[1]), plan(points, n[2]), plan(points, n[3])},
                     p, xi, eta))
           continue;
-        const double shear =
-            (1 - xi) * (1 - eta) * node_shear[n[0]] + xi * (1 - eta) * node_shear[n[1]] +
-            xi * eta * node_shear[n[2]] + (1 - xi) * eta * node_shear[n[3]];
-        point.shear_deg = shear * 180 / std::numbers::pi;
+        double u = i + xi, v = j + eta;
+        refine(x, y, p, u, v);
+        point.shear_deg = shear.at(u, v) * 180 / std::numbers::pi;
         break;
       }
     out.push_back(point);

@@ -316,7 +316,7 @@ TEST_CASE("V-IO-05 the supplied scenes hold the documented values") {
   }
   CHECK(literal.fabric.warp_bending_stiffness == 0);
   CHECK(literal.fabric.weft_bending_stiffness == 0);
-  CHECK(literal.fabric.formulation == CellFormulation::second_order);
+  CHECK(literal.fabric.formulation == CellFormulation::energy);
 }
 
 TEST_CASE("V-IO-05 the reference data are complete and consistent") {

@@ -29,8 +29,9 @@ class SecondOrderCell {
     T fallback{};  ///< 1 where the energy cell had to answer, else 0
   };
 
-  /// Fixed point of Eq. 25 with K_hh checked for positive definiteness; where it fails, the answer
-  /// of the energy cell, marked by `fallback` and `status`.
+  /// Fixed point of Eq. 25 with K_hh checked for positive definiteness and the heights for staying
+  /// within the cell; where it fails, the answer of the energy cell, marked by `fallback` and
+  /// `status`.
   /// @param control of the energy cell, where it has to answer
   template <class T>
   Solution<T> solve(const T& u1, const T& u2,
@@ -41,6 +42,7 @@ class SecondOrderCell {
     CellForces<T>& out = solution.forces;
     const YarnConstants<R>&y1 = fallback_.warp(), &y2 = fallback_.weft();
     const T k3(fallback_.contact_stiffness());
+    const R L3 = fallback_.parameters().contact_length;
     const T tolerance = T(R(8) * std::numeric_limits<R>::epsilon()) *
                         (T(y1.ka) * magnitude(u1) + T(y2.ka) * magnitude(u2));
     constexpr int limit = 50;
@@ -49,9 +51,11 @@ class SecondOrderCell {
       const Stiffness<T> a(y1, T(kappa_) * out.F1), b(y2, T(kappa_) * out.F2);
       const T det = a.hh * b.hh + k3 * (a.hh + b.hh);
       const T r1 = a.Lh * u1, r2 = b.Lh * u2;
-      stable = (det > T(0)) && (a.hh + k3 > T(0));
       out.w1 = (k3 * r2 - (b.hh + k3) * r1) / det;
       out.w2 = (k3 * r1 - (a.hh + k3) * r2) / det;
+      // Short of det = 0 the heights grow without bound: they must stay within the cell's own.
+      stable = (det > T(0)) && (a.hh + k3 > T(0)) && (magnitude(out.w1) < T(L3)) &&
+               (magnitude(out.w2) < T(L3));
       out.q = -(k3 * (out.w1 + out.w2));
       const T F1 = a.LL * u1 + a.Lh * out.w1, F2 = b.LL * u2 + b.Lh * out.w2;
       converged = (magnitude(F1 - out.F1) <= tolerance) && (magnitude(F2 - out.F2) <= tolerance);

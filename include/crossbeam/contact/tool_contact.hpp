@@ -83,8 +83,10 @@ class ToolContact {
   [[nodiscard]] virtual double stored_energy() const = 0;
   /// Contact pressure of every node [kN/mm^2].
   virtual void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const = 0;
-  /// Bound of this contact's own squared frequency on the fabric's nodes [1/ms^2].
+  /// Bound of this contact's share in the squared frequency of fabric and tool [1/ms^2], tag [D-3].
   [[nodiscard]] virtual double omega_squared(double areal_mass) const = 0;
+  /// Bound of its share in the damping rate c/m [1/ms].
+  [[nodiscard]] virtual double damping_rate(double areal_mass) const = 0;
 
   /// Moves the tool from t_n to t_{n+1}; after add_forces, before book.
   /// @return distance moved [mm]
@@ -264,12 +266,21 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   }
 
   [[nodiscard]] double omega_squared(double areal_mass) const override {
-    return parameters_.penalty * std::max(1.0, parameters_.stick_ratio) / areal_mass;
+    return sides() * penalty() / areal_mass;
+  }
+  [[nodiscard]] double damping_rate(double areal_mass) const override {
+    return sides() * 2 * parameters_.damping_ratio * std::sqrt(penalty() / areal_mass);
   }
 
   [[nodiscard]] const Shape& shape() const { return shape_; }
 
  private:
+  [[nodiscard]] double penalty() const {
+    return parameters_.penalty * std::max(1.0, parameters_.stick_ratio);
+  }
+  /// A free tool moves against the node: twice the spring in a row of the joint system.
+  [[nodiscard]] double sides() const { return this->motion_.is_free() ? 2 : 1; }
+
   template <class Mask>
   CROSSBEAM_INLINE static Vec3<T> select_lanes(const Mask& mask, const Vec3<T>& a) {
     const T zero(R(0));

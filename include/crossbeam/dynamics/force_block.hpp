@@ -40,9 +40,8 @@ class ForceBlock {
   virtual void add_energy(const NodalState<R>& state, InternalEnergy& energy) const = 0;
   /// Bound of the squared highest frequency of these forces on the lumped mass [1/ms^2]. Constant.
   [[nodiscard]] virtual double omega_squared() const = 0;
-  /// Share by which viscous forces shorten the stable step: it is multiplied by
-  /// sqrt(1 + b^2) - b with this b.
-  [[nodiscard]] virtual double damping_ratio() const { return 0; }
+  /// Bound of the largest damping rate c/m of these forces' viscous part [1/ms]. Constant.
+  [[nodiscard]] virtual double damping_rate() const { return 0; }
   /// State of every element of the block; empty for blocks without elements.
   virtual void sample(const NodalState<R>&, std::vector<ElementSample>&) const {}
   /// Gauss points evaluated in a step.

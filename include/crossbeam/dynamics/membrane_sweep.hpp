@@ -52,6 +52,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     require_non_negative("bulk_viscosity", options.bulk_viscosity, "-");
     require_positive("areal_mass", areal_mass, "kg/mm^2");
     const double stiffness = static_cast<double>(law_.stiffness_bound());
+    const double impedance = options.bulk_viscosity * std::sqrt(areal_mass * stiffness);
     for (int e = 0; e < element_count_; ++e) {
       const double difference =
           std::abs(mesh.fibre_angle(e) - static_cast<double>(law_.reference().delta));
@@ -60,12 +61,13 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
                          detail::to_text(mesh.fibre_angle(e) * 180 / std::numbers::pi), "deg",
                          "the law's " + detail::to_text(static_cast<double>(law_.reference().delta) *
                                                         180 / std::numbers::pi));
-      omega_squared_ = std::max(omega_squared_, element_omega_squared(mesh, e, stiffness, areal_mass));
+      const double omega_squared = element_omega_squared(mesh, e, stiffness, areal_mass);
+      omega_squared_ = std::max(omega_squared_, omega_squared);
+      // mu = b rho c h with h = sqrt(A); it acts where the stiffness acts, mu / stiffness as strong.
+      damping_rate_ = std::max(damping_rate_,
+                               impedance * std::sqrt(mesh.area(e)) / stiffness * omega_squared);
     }
-    // The longest wave that bulk viscosity sees is the element's: mu = b rho c h with h = sqrt(A).
     viscosity_ = options.bulk_viscosity > 0;
-    damping_ratio_ = options.bulk_viscosity;
-    const double impedance = options.bulk_viscosity * std::sqrt(areal_mass * stiffness);
     for (int b = 0; b < batches_.size(); ++b)
       for (int l = 0; l < lanes; ++l) fill_constants(mesh, b, l, impedance);
   }
@@ -105,7 +107,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   }
 
   [[nodiscard]] double omega_squared() const override { return omega_squared_; }
-  [[nodiscard]] double damping_ratio() const override { return damping_ratio_; }
+  [[nodiscard]] double damping_rate() const override { return damping_rate_; }
   [[nodiscard]] long long points() const override {
     return static_cast<long long>(element_count_) * Element::points;
   }
@@ -349,7 +351,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   int element_count_;
   R hourglass_{}, impedance_{};
   bool viscosity_ = false;
-  double omega_squared_ = 0, damping_ratio_ = 0;
+  double omega_squared_ = 0, damping_rate_ = 0;
   double viscous_work_ = 0, viscous_step_ = 0, path_work_ = 0;
   long long fallbacks_ = 0;
 };

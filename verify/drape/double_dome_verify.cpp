@@ -1,0 +1,341 @@
+/// @file
+/// The double dome as a whole: the case "realistic" against the bands of a preceding study, its
+/// determinism, its energy ledger, its critical step, tension locking, precision, culling.
+/// Theory: docs/theory/double_dome.md.
+
+#include "drape.hpp"
+#include "formed_part.hpp"
+#include "references.hpp"
+#include "scene.hpp"
+#include "support/claim.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace drape = crossbeam::drape;
+using drape::DrapeCase;
+using drape::DrapeResult;
+using verify::Bound;
+using verify::claim;
+
+DrapeCase scene(const std::string& name) { return drape::load_scene(drape::scene_path(name)); }
+
+DrapeCase realistic(double element_size, double speed) {
+  DrapeCase c = scene("realistic");
+  c.blank.element_size = element_size;
+  c.process.speed = speed;
+  c.output.frames = 1;
+  return c;
+}
+
+DrapeResult run(const DrapeCase& c) { return drape::run(c, drape::Progress()); }
+
+drape::References references() {
+  return drape::load_references(drape::scene_folder() / "references.toml");
+}
+
+double shear(const DrapeResult& r, int point) { return r.shear_points.at(point - 1).shear_deg; }
+
+/// Largest change of the shear angle at points 1 to `last` between two runs [deg].
+double largest_change(const DrapeResult& a, const DrapeResult& b, int last) {
+  double worst = 0;
+  for (int p = 1; p <= last; ++p) worst = std::max(worst, std::abs(shear(a, p) - shear(b, p)));
+  return worst;
+}
+
+bool same_bits(const DrapeResult& a, const DrapeResult& b) {
+  const std::vector<double>&x = a.frames.back().points, &y = b.frames.back().points;
+  return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
+}
+
+/// Linear interpolation of the outline's coordinate `of` at the value `at` of the other one.
+double on_outline(const std::vector<std::array<double, 2>>& line, int of, double at) {
+  const int other = 1 - of;
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+    const auto &a = line[k], &b = line[k + 1];
+    if ((a[other] - at) * (b[other] - at) <= 0 && a[other] != b[other])
+      return a[of] + (at - a[other]) / (b[other] - a[other]) * (b[of] - a[of]);
+  }
+  return std::nan("");
+}
+
+}  // namespace
+
+TEST_SUITE_BEGIN("drape");
+
+// The bands are the study's own: its extrapolation over mesh and speed, and what two honest codes may
+// differ by. Point 2 is judged in V-DRAPE-02, because it depends on the friction model.
+TEST_CASE("V-DRAPE-01 the realistic case at 2.5 mm and 1 m/s lies in the study's bands") {
+  const drape::StudyReference study = references().study;
+  REQUIRE(study.shear_deg.size() == 8);
+  const DrapeResult fine = run(realistic(2.5, 1));
+  REQUIRE(fine.quads.size() == 54 * 94);
+  for (int p = 1; p <= 8; ++p)
+    if (p != 2)
+      claim("V-DRAPE-01", std::abs(shear(fine, p) - study.shear_deg[p - 1].value),
+            study.shear_deg[p - 1].band,
+            "deg, distance from the study at point " + std::to_string(p));
+  for (int p : {9, 10})
+    claim("V-DRAPE-01", std::abs(shear(fine, p)), study.slack_flange_shear_deg,
+          "deg, magnitude in the slack flange at point " + std::to_string(p));
+  claim("V-DRAPE-01", std::abs(fine.maximum_shear_deg - study.maximum_shear_deg.value),
+        study.maximum_shear_deg.band, "deg, largest element angle");
+  claim("V-DRAPE-01", std::abs(fine.draw_in_x - study.draw_in_x.value), study.draw_in_x.band,
+        "mm, draw-in along x");
+  claim("V-DRAPE-01", std::abs(fine.draw_in_y - study.draw_in_y.value), study.draw_in_y.band,
+        "mm, draw-in along y");
+  for (int i = 0; i < 2; ++i)
+    claim("V-DRAPE-01", std::abs(fine.corner[i] - study.corner[i].value), study.corner[i].band,
+          i == 0 ? "mm, corner x" : "mm, corner y");
+  claim("V-DRAPE-01", std::abs(fine.ledger.back().shear - study.shear_energy.value),
+        study.shear_energy.band, "kN mm, shear energy of the quarter");
+  claim("V-DRAPE-01", std::abs(fine.residual_over_punch_work), 1e-3,
+        "ledger residual over punch work");
+
+  // 5 mm at 2 m/s against it, as development runs are made. Point 5 sits on the peak, and a speed of
+  // 2 m/s takes 0.25 deg off it whatever the mesh: at 1 m/s the same mesh has to come within 0.3.
+  const DrapeResult coarse = run(realistic(5, 2)), slow = run(realistic(5, 1));
+  for (int p : {2, 3, 4, 6})
+    claim("V-DRAPE-01", std::abs(shear(coarse, p) - shear(fine, p)), 0.3,
+          "deg, 5 mm and 2 m/s against 2.5 mm and 1 m/s at point " + std::to_string(p));
+  claim("V-DRAPE-01", std::abs(shear(coarse, 5) - shear(fine, 5)), 0.5,
+        "deg, 5 mm and 2 m/s against 2.5 mm and 1 m/s at point 5, the peak");
+  claim("V-DRAPE-01", std::abs(shear(slow, 5) - shear(fine, 5)), 0.3,
+        "deg, 5 mm and 1 m/s against 2.5 mm and 1 m/s at point 5");
+}
+
+// The study ran a slip-rate friction; the elastic stick moves point 2 by 0.3 deg. With the study's
+// own model the study's own number has to come out.
+TEST_CASE("V-DRAPE-02 the friction model accounts for the study's point 2") {
+  const drape::Banded study = references().study.shear_deg.at(1);
+  DrapeCase c = realistic(5, 1);
+  const DrapeResult stick = run(c);
+  c.contact.friction_model = drape::FrictionModel::viscous;
+  const DrapeResult viscous = run(c);
+  claim("V-DRAPE-02", std::abs(shear(viscous, 2) - study.value), study.band,
+        "deg, point 2 with slip-rate friction against the study");
+  claim("V-DRAPE-02", shear(stick, 2) - shear(viscous, 2), 0.15,
+        "deg that the elastic stick adds at point 2", Bound::lower);
+}
+
+// What any drape that claims the benchmark has to show, independent of the study's digits.
+TEST_CASE("V-DRAPE-03 the formed part is the benchmark's: peak, second maximum, draw-in, outline") {
+  const drape::NetReference net = references().net;
+  const DrapeResult r = run(realistic(5, 2));
+  int peak = 1;
+  for (int p = 1; p <= 10; ++p)
+    if (shear(r, p) > shear(r, peak)) peak = p;
+  CHECK(peak == 5);
+  CHECK(shear(r, 5) > 33);
+  CHECK(shear(r, 5) < 44);
+  for (int p : {1, 10}) CHECK(std::abs(shear(r, p)) < 12);
+  CHECK(shear(r, 8) > shear(r, 7));
+  CHECK(shear(r, 8) > shear(r, 9));
+  CHECK(shear(r, 8) > 5);
+  CHECK(shear(r, 8) < 12);
+  claim("V-DRAPE-03", std::abs(r.draw_in_x - 28.9), 0.6, "mm, draw-in x around 28.3 .. 29.5");
+  claim("V-DRAPE-03", std::abs(r.draw_in_y - 25.1), 0.6, "mm, draw-in y around 24.5 .. 25.7");
+  double worst = 0;
+  int compared = 0;
+  for (const auto& [x, y] : net.long_edge)
+    if (y <= 75) {  // the straight part beside the ridge
+      worst = std::max(worst, std::abs(on_outline(r.outline, 0, std::max(y, 0.5)) - x));
+      ++compared;
+    }
+  for (const auto& [x, y] : net.short_edge)
+    if (x <= 12.5 || x >= 87.5) {
+      worst = std::max(worst, std::abs(on_outline(r.outline, 1, std::max(x, 0.5)) - y));
+      ++compared;
+    }
+  REQUIRE(compared >= 4);
+  claim("V-DRAPE-03", worst, 2.0, "mm between the outline and the net's on the straight parts");
+}
+
+// Rounding noise of 1e-9 mm must not show: bending makes the drape deterministic. Without it wrinkles
+// localise and the same noise moves the answer by an order of magnitude more: pinned beside it.
+TEST_CASE("V-DRAPE-04 a start perturbation of 1e-9 mm moves points 1 to 8 by less than 0.05 deg") {
+  DrapeCase c = realistic(5, 2);
+  const DrapeResult calm = run(c);
+  double worst = 0, largest_shift = 0;
+  for (std::uint64_t seed : {1, 2, 3}) {
+    c.blank.perturbation = 1e-9;
+    c.blank.seed = seed;
+    const DrapeResult noisy = run(c);
+    worst = std::max(worst, largest_change(calm, noisy, 8));
+    for (std::size_t k = 0; k < calm.frames[0].points.size(); ++k)
+      largest_shift = std::max(
+          largest_shift, std::abs(calm.frames[0].points[k] - noisy.frames[0].points[k]));
+  }
+  REQUIRE(largest_shift > 1e-10);  // the start really differs
+  REQUIRE(largest_shift < 1e-8);
+  claim("V-DRAPE-04", worst, 0.05, "deg, largest change at points 1 to 8 over three seeds");
+
+  DrapeCase bare = scene("paper-literal");
+  bare.fabric.formulation = drape::CellFormulation::energy;
+  bare.output.frames = 1;
+  const DrapeResult bare_calm = run(bare);
+  bare.blank.perturbation = 1e-9;
+  const DrapeResult bare_noisy = run(bare);
+  claim("V-DRAPE-04", largest_change(bare_calm, bare_noisy, 8), 0.05,
+        "deg, the same noise on a membrane without bending", Bound::lower);
+}
+
+TEST_CASE("V-DRAPE-05 the energy ledger closes in double and in float, and every term is there") {
+  DrapeCase c = realistic(5, 2);
+  const DrapeResult r = run(c);
+  const drape::LedgerRow& end = r.ledger.back();
+  for (double term : {end.punch_work, end.yarn, end.shear, end.bending, end.hourglass, end.contact,
+                      end.kinetic, end.friction, end.contact_damping, end.mass_damping,
+                      end.bulk_viscosity})
+    REQUIRE(term > 0);
+  claim("V-DRAPE-05", std::abs(r.residual_over_punch_work), 1e-3,
+        "largest residual over punch work, double");
+  const double internal = end.yarn + end.shear + end.bending + end.hourglass;
+  claim("V-DRAPE-05", end.hourglass / internal, 0.01, "hourglass share of the internal energy");
+  claim("V-DRAPE-05", end.contact / internal, 1e-3, "contact share of the internal energy");
+  c.integration.precision = drape::Precision::float_;
+  const DrapeResult single = run(c);
+  claim("V-DRAPE-05", std::abs(single.residual_over_punch_work), 1e-2,
+        "largest residual over punch work, float");
+  claim("V-DRAPE-05", largest_change(r, single, 8), 0.1,
+        "deg, float against double at points 1 to 8");
+}
+
+TEST_CASE("V-DRAPE-06 0.9 of the critical step runs, 1.5 of it blows up with a clear message") {
+  DrapeCase c = realistic(10, 4);
+  c.integration.step_factor = 0.9;
+  CHECK_NOTHROW(run(c));
+  c.integration.step_factor = 1.5;
+  std::string message;
+  try {
+    run(c);
+  } catch (const crossbeam::RunError& error) {
+    message = error.what();
+  }
+  INFO("message: ", message);
+  CHECK(message.find("time step") != std::string::npos);
+}
+
+// Fibres at 45 deg to the mesh: with 2x2 points an element cannot shear without stretching its yarns
+// somewhere, and stores energy in them. One point with hourglass control of shear size does not.
+TEST_CASE("V-DRAPE-07 one point cures the tension locking of a mesh at 45 deg to the yarns") {
+  DrapeCase c = realistic(5, 2);
+  c.blank.layout = 45;
+  const DrapeResult one = run(c);
+  c.blank.gauss_points = 4;
+  const DrapeResult four = run(c);
+  claim("V-DRAPE-07", one.ledger.back().yarn / four.ledger.back().yarn, 0.1,
+        "yarn energy with one point over that with 2x2: what 2x2 stores is locking, not fabric");
+  claim("V-DRAPE-07", one.ledger.back().hourglass / one.ledger.back().shear, 0.05,
+        "hourglass over shear energy with one point: the cure is not hidden stiffness");
+
+  // Yarns along the mesh do not lock.
+  DrapeCase aligned = realistic(5, 2);
+  const DrapeResult aligned_one = run(aligned);
+  aligned.blank.gauss_points = 4;
+  const DrapeResult aligned_four = run(aligned);
+  claim("V-DRAPE-07", aligned_one.ledger.back().yarn / aligned_four.ledger.back().yarn, 0.5,
+        "the same ratio with the yarns along the mesh", Bound::lower);
+}
+
+TEST_CASE("V-DRAPE-08 the same case gives the same bits, with contact culling on and off") {
+  DrapeCase c = realistic(10, 4);
+  const DrapeResult first = run(c), second = run(c);
+  CHECK(same_bits(first, second));
+  c.contact.culling = false;
+  const DrapeResult every_node = run(c);
+  CHECK(same_bits(first, every_node));
+  c.blank.perturbation = 1e-9;
+  CHECK_FALSE(same_bits(first, run(c)));  // the comparison can fail
+}
+
+// Over the whole stroke most runs with this cell stop with an open ledger: it creates energy
+// (docs/theory/double_dome.md). Up to 50 mm it has to behave, and to need no fallback.
+TEST_CASE("V-DRAPE-09 the second-order cell drapes to 50 mm with a closed ledger") {
+  DrapeCase c = scene("paper-literal");
+  c.fabric.formulation = drape::CellFormulation::second_order;
+  c.process.stroke = 50;
+  c.output.frames = 1;
+  const DrapeResult r = run(c);
+  CHECK(r.cell_fallbacks == 0);
+  CHECK(std::isfinite(r.ledger.back().yarn));
+  claim("V-DRAPE-09", std::abs(r.residual_over_punch_work), 1e-3,
+        "largest residual over punch work; the yarns' share is summed along the path");
+}
+
+// Independent of any drape: a smooth field sampled at the centres of a smoothly deformed mesh.
+TEST_CASE("V-DRAPE-10 the shear angle at a plan point is recovered with third order") {
+  const auto field = [](double X, double Y) { return 0.5 * std::sin(X / 30) * std::cos(Y / 40); };
+  // Twenty maps that differ in their draw-in put the points at all places within the elements.
+  constexpr int maps = 20;
+  const auto formed = [](double X, double Y, int map) {
+    const double draw = 0.78 + 0.004 * map;
+    return std::array<double, 2>{X * (draw - 0.0002 * Y + 1e-6 * X * X),
+                                 Y * (0.9 - 0.0003 * X + 1e-6 * Y * X)};
+  };
+  std::vector<double> error;
+  for (int refinement : {1, 2, 4}) {
+    const drape::QuarterGrid grid{27 * refinement, 47 * refinement, 135, 235};
+    double sum = 0;
+    int count = 0;
+    for (int map = 0; map < maps; ++map) {
+      std::vector<double> points, shear;
+      for (int i = 0; i <= grid.nx; ++i)
+        for (int j = 0; j <= grid.ny; ++j) {
+          const auto p = formed(135.0 * i / grid.nx, 235.0 * j / grid.ny, map);
+          points.insert(points.end(), {p[0], p[1], 0.0});
+        }
+      for (int i = 0; i < grid.nx; ++i)
+        for (int j = 0; j < grid.ny; ++j)
+          shear.push_back(field(135 * (i + 0.5) / grid.nx, 235 * (j + 0.5) / grid.ny));
+      const auto found = drape::shear_points(grid, points, shear);
+      REQUIRE(found.size() == 10);
+      for (int p = 2; p <= 9; ++p) {  // away from the edges, where the field is continued linearly
+        const drape::ShearPoint& at = found[p - 1];
+        double X = at.x, Y = at.y;  // the material point, by fixed-point iteration on the exact map
+        for (int k = 0; k < 400; ++k) {
+          const auto q = formed(X, Y, map);
+          X += at.x - q[0];
+          Y += at.y - q[1];
+        }
+        const auto back = formed(X, Y, map);
+        REQUIRE(std::abs(back[0] - at.x) + std::abs(back[1] - at.y) < 1e-10);
+        const double exact = field(X, Y) * 180 / 3.14159265358979323846;
+        sum += (at.shear_deg - exact) * (at.shear_deg - exact);
+        ++count;
+      }
+    }
+    error.push_back(std::sqrt(sum / count));
+  }
+  // Cubic convolution is of third order; the first halving is not yet asymptotic.
+  claim("V-DRAPE-10", std::log2(error[0] / error[1]), 2.5, "order, 5 -> 2.5 mm", Bound::lower);
+  claim("V-DRAPE-10", std::log2(error[1] / error[2]), 2.8, "order, 2.5 -> 1.25 mm", Bound::lower);
+}
+
+TEST_CASE("V-DRAPE-11 a run that goes wrong names place and cause") {
+  DrapeCase c = realistic(10, 4);
+  // Yarns of rubber, held as by a vice: they have to stretch far beyond what a yarn can.
+  c.fabric.cell.warp.youngs_modulus = c.fabric.cell.weft.youngs_modulus = 0.01;
+  c.process.holder_force = 10;
+  c.contact.friction = 1;
+  std::string message;
+  try {
+    run(c);
+  } catch (const crossbeam::RunError& error) {
+    message = error.what();
+  }
+  INFO("message: ", message);
+  CHECK(message.find("stroke") != std::string::npos);
+  CHECK(message.find("material point") != std::string::npos);
+  CHECK(message.find("admissible") != std::string::npos);
+}
+
+TEST_SUITE_END();
