@@ -232,7 +232,7 @@ TEST_CASE("V-CELL-20 a slack yarn without bending carries exactly nothing") {
   straight.claim("V-CELL-20", 1e-14, "force and stiffness of a straight yarn: EA/l0 (L + u - l0)");
 }
 
-TEST_CASE("V-CELL-27 the reading of Table 1: 17.6 mm^2 is the contact area") {
+TEST_CASE("V-CELL-27 the reading of Table 1: 17.6 mm^2 is the contact area, and what matters") {
   const Answer ours = answer(Cell(verify::table_1()), 0.025, 0.025);
   Parameters literal = verify::table_1();
   literal.warp.cross_section = 17.6;
@@ -247,6 +247,32 @@ TEST_CASE("V-CELL-27 the reading of Table 1: 17.6 mm^2 is the contact area") {
                                       std::abs(misprint.forces.F2 - 0.53)),
                 5e-3, "literal A_warp = 17.6 mm^2: a balanced fabric with forces 2:1 [kN]");
   CHECK(ours.forces.F1 == doctest::Approx(ours.forces.F2).epsilon(1e-13));
+
+  // Which of the guessed numbers matter: the contact's stiffness hardly does, the crimp height does.
+  const auto largest_change = [](auto change) {
+    Parameters changed = verify::table_1();
+    change(changed);
+    const Cell before(verify::table_1()), after(changed);
+    double worst = 0;
+    for (int i = -4; i <= 6; ++i)
+      for (int j = -4; j <= 6; ++j) {
+        const Answer a = answer(before, 0.0125 * i, 0.0125 * j);
+        const Answer b = answer(after, 0.0125 * i, 0.0125 * j);
+        for (const auto force : {&crossbeam::CellForces<double>::F1,
+                                 &crossbeam::CellForces<double>::F2})
+          if (a.forces.*force > 0.02)
+            worst = std::max(worst, std::abs(b.forces.*force / (a.forces.*force) - 1));
+      }
+    return worst;
+  };
+  const double softer = largest_change([](Parameters& p) { p.contact_area /= 2; });
+  const double stiffer = largest_change([](Parameters& p) { p.contact_modulus *= 10; });
+  const double flatter = largest_change([](Parameters& p) { p.contact_length = 0.6; });
+  // Printed as 1 % and as "up to 340 %": upper and lower bounds.
+  verify::claim("V-CELL-27", std::max(softer, stiffer), 0.011,
+                "largest change of a force above 0.02 kN, contact half or ten times as stiff");
+  verify::claim("V-CELL-27", flatter, 3.0, "the same for a contact length of 0.6 instead of 0.8 mm",
+                verify::Bound::lower);
 }
 
 TEST_SUITE_END();
