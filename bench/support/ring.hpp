@@ -1,7 +1,8 @@
 #pragma once
 /// @file
 /// The inputs: a ring of random states with a fixed seed, gone through again and again. Long enough
-/// that no branch predictor learns it, short enough that it stays in the first-level cache.
+/// to be hard on a branch predictor; the strains stay in the first-level cache, the corners in the
+/// second.
 
 #include "crossbeam/base/scalar.hpp"
 #include "crossbeam/kinematics/fibre_frame.hpp"
