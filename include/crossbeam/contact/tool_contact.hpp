@@ -84,9 +84,10 @@ class ToolContact {
   /// Contact pressure of every node [kN/mm^2].
   virtual void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const = 0;
   /// Bound of this contact's share in the squared frequency of fabric and tool [1/ms^2], tag [D-3].
-  [[nodiscard]] virtual double omega_squared(double areal_mass) const = 0;
+  /// @param area of the whole fabric [mm^2]: no more than that can rest on the tool
+  [[nodiscard]] virtual double omega_squared(double areal_mass, double area) const = 0;
   /// Bound of its share in the damping rate c/m [1/ms].
-  [[nodiscard]] virtual double damping_rate(double areal_mass) const = 0;
+  [[nodiscard]] virtual double damping_rate(double areal_mass, double area) const = 0;
 
   /// Moves the tool from t_n to t_{n+1}; after add_forces, before book.
   /// @return distance moved [mm]
@@ -95,14 +96,18 @@ class ToolContact {
     if (motion_.is_free()) {
       applied_ = motion_.force(t);
       const double a = motion_.damping_rate;
+      // At rest at t = 0: v_{-1/2} as for the nodes.
+      if (!moved_) v_minus_ = -dt / 2 * (applied_ - force_.z) / motion_.mass;
       v_plus_ = ((1 - a * dt / 2) * v_minus_ + dt * (applied_ - force_.z) / motion_.mass) /
                 (1 + a * dt / 2);
       z_ += dt * v_plus_;
     } else {
       const double z = motion_.position(t + dt);
       v_plus_ = (z - z_) / dt;
+      if (!moved_) v_minus_ = v_plus_;
       z_ = z;
     }
+    moved_ = true;
     return std::abs(v_plus_) * dt;
   }
 
@@ -114,6 +119,8 @@ class ToolContact {
   [[nodiscard]] const Vec3<double>& force_on_fabric() const { return force_; }
 
  protected:
+  /// Velocity predicted for t_n, before `advance`, as that of the nodes, tag [D-2].
+  [[nodiscard]] double predicted_velocity() const { return 1.5 * v_plus_ - 0.5 * v_minus_; }
   /// Tool velocity that goes with the node velocities a v_centre + b v (book).
   [[nodiscard]] double velocity(double a, double b) const {
     return a * (v_minus_ + v_plus_) / 2 + b * v_plus_;
@@ -133,6 +140,7 @@ class ToolContact {
   ToolMotion motion_;
   ContactWork work_;
   double z_ = 0, v_minus_ = 0, v_plus_ = 0, applied_ = 0;
+  bool moved_ = false;
   Vec3<double> force_{};
 };
 
@@ -168,6 +176,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     const T half_over_dt(static_cast<R>(0.5 / dt));
     const T slip(static_cast<R>(parameters_.slip_speed));
     const T tool_z(static_cast<R>(this->z_)), tool_v(static_cast<R>(this->v_plus_));
+    const T tool_v_now(static_cast<R>(this->predicted_velocity()));
     const bool sticks = parameters_.friction_model == Friction::elastic_stick;
     const T zero(R(0)), tiny(std::numeric_limits<R>::min());
     Vec3<double> sum{};
@@ -195,9 +204,9 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const T k = kp * area;
       const T elastic = k * penetration;
 
-      // Normal damping never pulls: the total stays a pressure.
+      // Normal damping never pulls: the total stays a pressure [F-1].
       using std::sqrt;
-      const T closing = -(dot(v_now, at.normal) - tool_v * at.normal.z);
+      const T closing = -(dot(v_now, at.normal) - tool_v_now * at.normal.z);
       const T viscous = select(touching, maximum(zeta2 * sqrt(k * m) * closing, -elastic), zero);
       const T pressure = elastic + viscous;
 
@@ -265,11 +274,12 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       pressure[n] += static_cast<double>(normal_[n]) / static_cast<double>(state.area[n]);
   }
 
-  [[nodiscard]] double omega_squared(double areal_mass) const override {
-    return sides() * penalty() / areal_mass;
+  [[nodiscard]] double omega_squared(double areal_mass, double area) const override {
+    return sides(areal_mass, area) * penalty() / areal_mass;
   }
-  [[nodiscard]] double damping_rate(double areal_mass) const override {
-    return sides() * 2 * parameters_.damping_ratio * std::sqrt(penalty() / areal_mass);
+  [[nodiscard]] double damping_rate(double areal_mass, double area) const override {
+    return sides(areal_mass, area) * 2 * parameters_.damping_ratio *
+           std::sqrt(penalty() / areal_mass);
   }
 
   [[nodiscard]] const Shape& shape() const { return shape_; }
@@ -278,8 +288,10 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   [[nodiscard]] double penalty() const {
     return parameters_.penalty * std::max(1.0, parameters_.stick_ratio);
   }
-  /// A free tool moves against the node: twice the spring in a row of the joint system.
-  [[nodiscard]] double sides() const { return this->motion_.is_free() ? 2 : 1; }
+  /// A free tool moves against the nodes: each spring works on 1/m and its share of the tool's 1/M.
+  [[nodiscard]] double sides(double areal_mass, double area) const {
+    return this->motion_.is_free() ? 1 + areal_mass * area / this->motion_.mass : 1;
+  }
 
   template <class Mask>
   CROSSBEAM_INLINE static Vec3<T> select_lanes(const Mask& mask, const Vec3<T>& a) {

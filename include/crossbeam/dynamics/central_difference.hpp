@@ -36,14 +36,15 @@ class CentralDifference {
   /// and the contacts with their own damping by themselves. Constant over a run.
   /// @throws RunError for a model without stiffness
   [[nodiscard]] double critical_step() const {
-    double fabric = 0, viscosity = 0, contact = 0, contact_damping = 0;
+    double fabric = 0, viscosity = 0, contact = 0, contact_damping = 0, area = 0;
+    for (int n = 0; n < state_.node_count; ++n) area += static_cast<double>(state_.area[n]);
     for (const auto& b : blocks_) {
       fabric += b->omega_squared();
       viscosity += b->damping_rate();
     }
     for (const auto& t : tools_) {
-      contact += t->omega_squared(areal_mass_);
-      contact_damping += t->damping_rate(areal_mass_);
+      contact += t->omega_squared(areal_mass_, area);
+      contact_damping += t->damping_rate(areal_mass_, area);
     }
     if (!(fabric + contact > 0)) throw RunError("no stiffness in the model: no critical step");
     const double all = stable_step(fabric + contact, viscosity);
@@ -74,18 +75,21 @@ class CentralDifference {
     double tool_travel = 0;
     for (const auto& t : tools_) tool_travel = std::max(tool_travel, t->advance(time_, dt_));
     travel_ += fastest * dt_ + tool_travel;
-    if (sample) {
-      // First half of the step's work, the energies at t_n, then the second half.
-      book(2, -1, dt_ / 2);
-      const Totals now = totals();
-      ledger.time = time_;
-      ledger.kinetic = now.kinetic;
-      ledger.friction = now.friction;
-      ledger.contact_damping = now.contact_damping;
-      ledger.mass_damping = mass_damping_work_;
-      ledger.external = now.external;
-      ledger.initial = initial_;
-      *sample = ledger;
+    if (sample || steps_ == 0) {
+      // First half of the step's work, the energies at t_n, then the second half. The first half of
+      // the first step would lie before the start.
+      if (steps_ > 0) book(2, -1, dt_ / 2);
+      if (sample) {
+        const Totals now = totals();
+        ledger.time = time_;
+        ledger.kinetic = now.kinetic;
+        ledger.friction = now.friction;
+        ledger.contact_damping = now.contact_damping;
+        ledger.mass_damping = mass_damping_work_;
+        ledger.external = now.external;
+        ledger.initial = initial_;
+        *sample = ledger;
+      }
       book(0, 1, dt_ / 2);
     } else {
       book(1, 0, dt_);

@@ -64,8 +64,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       const double omega_squared = element_omega_squared(mesh, e, stiffness, areal_mass);
       omega_squared_ = std::max(omega_squared_, omega_squared);
       // mu = b rho c h with h = sqrt(A); it acts where the stiffness acts, mu / stiffness as strong.
-      damping_rate_ = std::max(damping_rate_,
-                               impedance * std::sqrt(mesh.area(e)) / stiffness * omega_squared);
+      double area = 0;
+      for (const auto& p : Element::coefficients(mesh.corners(e), mesh.fibres[e]))
+        area = std::max(area, Element::points * p.weight);
+      damping_rate_ =
+          std::max(damping_rate_, impedance * std::sqrt(area) / stiffness * omega_squared);
     }
     viscosity_ = options.bulk_viscosity > 0;
     for (int b = 0; b < batches_.size(); ++b)
@@ -229,7 +232,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     }
     if constexpr (Viscous) {
       viscous_step_ = dissipation * dt;
-      viscous_work_ += viscous_step_;
+      viscous_work_ += started_ ? viscous_step_ : 0.5 * viscous_step_;  // nothing before t = 0
+      started_ = true;
     }
   }
 
@@ -350,7 +354,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   LaneArray<T> previous_;
   int element_count_;
   R hourglass_{}, impedance_{};
-  bool viscosity_ = false;
+  bool viscosity_ = false, started_ = false;
   double omega_squared_ = 0, damping_rate_ = 0;
   double viscous_work_ = 0, viscous_step_ = 0, path_work_ = 0;
   long long fallbacks_ = 0;

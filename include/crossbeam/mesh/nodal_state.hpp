@@ -66,7 +66,7 @@ struct NodalState {
     }
   }
 
-  /// Velocity predicted for t_n from v_{n-1/2} and the last acceleration, of second order.
+  /// Velocity predicted for t_n from v_{n-1/2} and the last acceleration, of second order, tag [D-2].
   template <class T>
   CROSSBEAM_INLINE Vec3<T> predicted_velocity(const Vec3<T>& half, const Vec3<T>& centre) const {
     return T(R(2)) * half - centre;
