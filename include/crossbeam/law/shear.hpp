@@ -191,9 +191,12 @@ class PolynomialCurve {
       throw InputError("shear.coefficients", std::to_string(coefficients.size()) + " numbers", "",
                        "1 to 8 numbers");
     terms_ = static_cast<int>(coefficients.size());
-    for (int k = 0; k < terms_; ++k)
-      a_[k] = require_finite("shear.coefficients[" + std::to_string(k) + "]", coefficients[k],
-                             "kN/mm");
+    for (int k = 0; k < terms_; ++k) {
+      modulus_[k] = require_finite("shear.coefficients[" + std::to_string(k) + "]",
+                                   coefficients[k], "kN/mm");
+      traction_[k] = modulus_[k] / R(k + 1);
+      energy_[k] = traction_[k] / R(k + 2);
+    }
     for (int k = 0; k <= 120; ++k) {
       const R G = modulus(R(k) / R(100));
       if (!(G >= R(0)))
@@ -204,25 +207,28 @@ class PolynomialCurve {
 
   template <class T>
   CROSSBEAM_INLINE T modulus(const T& g) const {
-    T sum(a_[terms_ - 1]);
-    for (int k = terms_ - 2; k >= 0; --k) sum = sum * g + T(a_[k]);
-    return sum;
+    return sum(modulus_, g);
   }
   template <class T>
   CROSSBEAM_INLINE T traction(const T& g) const {
-    T sum(a_[terms_ - 1] / R(terms_));
-    for (int k = terms_ - 2; k >= 0; --k) sum = sum * g + T(a_[k] / R(k + 1));
-    return sum * g;
+    return sum(traction_, g) * g;
   }
   template <class T>
   CROSSBEAM_INLINE T energy(const T& g) const {
-    T sum(a_[terms_ - 1] / R(terms_ * (terms_ + 1)));
-    for (int k = terms_ - 2; k >= 0; --k) sum = sum * g + T(a_[k] / R((k + 1) * (k + 2)));
-    return sum * g * g;
+    return sum(energy_, g) * g * g;
   }
 
  private:
-  R a_[max_terms]{};
+  using Coefficients = R[max_terms];
+
+  template <class T>
+  CROSSBEAM_INLINE T sum(const Coefficients& a, const T& g) const {
+    T total(a[terms_ - 1]);
+    for (int k = terms_ - 2; k >= 0; --k) total = total * g + T(a[k]);
+    return total;
+  }
+
+  Coefficients modulus_{}, traction_{}, energy_{};
   int terms_ = 0;
 };
 
