@@ -54,9 +54,11 @@ class QuarterDrape {
           BendingStiffness{c.fabric.warp_bending_stiffness, c.fabric.weft_bending_stiffness},
           c.fabric.areal_mass, symmetry_));
     add_tools();
-    // Faster than sound in the yarns, nothing in this model moves.
+    // Faster than sound in the yarns nothing in this model moves, unless the yarns are softer than
+    // the punch is slow.
     const double bound = CrossedBeamCell<double>(c.fabric.cell).membrane_stiffness_bound();
-    integrator_.set_speed_limit(std::sqrt(bound / c.fabric.areal_mass));
+    integrator_.set_speed_limit(
+        std::max(std::sqrt(bound / c.fabric.areal_mass), 100 * c.process.speed));
   }
 
   DrapeResult run(const Progress& progress) {
