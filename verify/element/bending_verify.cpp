@@ -112,6 +112,20 @@ TEST_CASE("V-BEND-01 the second difference is exact for every quadratic field") 
   exact.claim("V-BEND-01", 1e-14, "second derivative, relative to the sum of the terms");
   sizes.claim("V-BEND-01", stencil_limit / 2, "sum of |w| r^2 inside distorted meshes");
 
+  // Along the line, unequal neighbours too.
+  const auto uneven = three_point_difference(
+      0, {{1, 2.0, 0.0}, {2, -0.7, 0.0}, {3, 0.1, 1.0}, {4, 3.0, 0.0}});
+  REQUIRE(uneven.size() == 3);
+  double linear = 0, quadratic = 0, constant = 0;
+  for (const auto& w : uneven) {
+    const double s = w.id == 0 ? 0.0 : w.id == 1 ? 2.0 : -0.7;
+    constant += w.weight;
+    linear += w.weight * s;
+    quadratic += w.weight * s * s;
+  }
+  claim("V-BEND-01", std::abs(constant) + std::abs(linear) + std::abs(quadratic - 2), 1e-15,
+        "unequal spacing: moments of the weights off 0, 0, 2");
+
   // A ring on one side only, as at a free edge, would extrapolate: it is refused.
   for (double angle : {pi / 4, 0.3, 1.1})
     for (double distortion : {1e-3, 1e-2}) {

@@ -150,6 +150,64 @@ struct Pack {
   }
 };
 
+/// One lane is a plain number: g++ 12 miscompiles masks of one-element vectors from -O2 on (a stopped
+/// plate was pushed on by its friction, V-CONT-22), and other compilers have no vectors.
+template <class S>
+struct PackMask<S, 1> {
+  bool v;
+
+  CROSSBEAM_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v && b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v || b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v && b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v || b.v}; }
+  CROSSBEAM_INLINE friend PackMask operator!(PackMask a) { return {!a.v}; }
+  CROSSBEAM_INLINE bool operator[](int) const { return v; }
+  CROSSBEAM_INLINE friend bool any(PackMask a) { return a.v; }
+  CROSSBEAM_INLINE friend bool all(PackMask a) { return a.v; }
+};
+
+template <class S>
+struct Pack<S, 1> {
+  using Value = S;
+  using Mask = PackMask<S, 1>;
+  S v;
+
+  Pack() = default;
+  template <class A>
+    requires std::is_arithmetic_v<A>
+  CROSSBEAM_INLINE Pack(A s) : v(static_cast<S>(s)) {}
+
+  CROSSBEAM_INLINE static Pack load(const S* from) { return *from; }
+  CROSSBEAM_INLINE void store(S* to) const { *to = v; }
+  CROSSBEAM_INLINE S operator[](int) const { return v; }
+  CROSSBEAM_INLINE void set(int, S value) { v = value; }
+
+  CROSSBEAM_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  CROSSBEAM_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  CROSSBEAM_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+  CROSSBEAM_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  CROSSBEAM_INLINE friend Pack operator-(Pack a) { return -a.v; }
+  CROSSBEAM_INLINE friend Pack operator+(Pack a) { return a; }
+  CROSSBEAM_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
+  CROSSBEAM_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
+  CROSSBEAM_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
+
+  CROSSBEAM_INLINE friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
+  CROSSBEAM_INLINE friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+  CROSSBEAM_INLINE friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
+  CROSSBEAM_INLINE friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+  CROSSBEAM_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
+
+  CROSSBEAM_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a : b; }
+  CROSSBEAM_INLINE friend Pack sqrt(Pack a) { return std::sqrt(a.v); }
+  template <class Op>
+  CROSSBEAM_INLINE friend Pack per_lane(Pack a, Op op) {
+    return static_cast<S>(op(a.v));
+  }
+  CROSSBEAM_INLINE friend S lane_maximum(Pack a) { return a.v; }
+  CROSSBEAM_INLINE friend S lane_sum(Pack a) { return a.v; }
+};
+
 template <class S, int N>
 struct ScalarTraits<Pack<S, N>> {
   using Real = S;
