@@ -191,7 +191,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const auto touching = (at.gap < zero) && (area > zero);
       if (!any(touching)) {
         const T clearance = select(area > zero, at.clearance, T(std::numeric_limits<R>::max()));
-        // `travel` grows by what node and tool move together: it must use up the clearance first.
+        // `travel` grows by what node and tool move together: it must use up the clearance first [F-4].
         safe_until_[b] = travel + static_cast<double>(-lane_maximum(-clearance));
         if (active_[b]) release(n, b);
         continue;
