@@ -268,7 +268,7 @@ TEST_CASE("V-DRAPE-08 the same case gives the same bits, with contact culling on
   CHECK_FALSE(same_bits(first, run(c)));  // the comparison can fail
 }
 
-// Over the whole stroke most runs with this cell stop with an open ledger: it creates energy
+// Over the whole stroke half of the runs with this cell stop with an open ledger: it creates energy
 // (docs/theory/double_dome.md). Up to 50 mm it has to behave, and to need no fallback.
 TEST_CASE("V-DRAPE-09 the second-order cell drapes to 50 mm with a closed ledger") {
   DrapeCase c = scene("paper-literal");

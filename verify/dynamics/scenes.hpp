@@ -13,8 +13,8 @@ namespace scenes {
 
 using namespace patches;
 
-/// The same force per mass on every node [mm/ms^2]. Its potential counts as yarn energy, so that the
-/// ledger knows it.
+/// The same force per mass on every node [mm/ms^2]. Its potential counts as yarn energy, so that
+/// the ledger knows it.
 template <class R = double>
 class Gravity final : public ForceBlock<R> {
  public:
@@ -60,7 +60,8 @@ class Pull final : public ForceBlock<double> {
 template <class T, class Shape>
 std::unique_ptr<ToolContact<real_t<T>>> tool(Shape shape, ToolMotion motion,
                                              const ContactParameters& p, int nodes) {
-  return std::make_unique<RigidToolContact<T, Shape>>(std::move(shape), std::move(motion), p, nodes);
+  return std::make_unique<RigidToolContact<T, Shape>>(std::move(shape), std::move(motion), p,
+                                                      nodes);
 }
 
 /// Rim nodes of a grid with n + 1 nodes per row.
@@ -68,12 +69,13 @@ inline std::vector<NodeConstraint> fixed_rim(int nx, int ny) {
   std::vector<NodeConstraint> out;
   for (int i = 0; i <= nx; ++i)
     for (int j = 0; j <= ny; ++j)
-      if (i == 0 || i == nx || j == 0 || j == ny) out.push_back({i * (ny + 1) + j, true, true, true});
+      if (i == 0 || i == nx || j == 0 || j == ny)
+        out.push_back({i * (ny + 1) + j, true, true, true});
   return out;
 }
 
-/// A sheet stretched by `strain` both ways and held at its rim: taut, so that its law is smooth around
-/// it. Its nodes start with a smooth velocity in all directions [mm/ms].
+/// A sheet stretched by `strain` both ways and held at its rim: taut, so that its law is smooth
+/// around it. Its nodes start with a smooth velocity in all directions [mm/ms].
 struct TautSheet {
   static constexpr int n = 8;
   static constexpr double h = 5, strain = 0.015;
@@ -100,7 +102,8 @@ struct TautSheet {
     out.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
         mesh, law, areal_mass, MembraneOptions{1e-4, bulk_viscosity}));
     if (bending > 0)
-      out.add(std::make_unique<BendingSweep<T>>(mesh, BendingStiffness{bending, bending}, areal_mass));
+      out.add(
+          std::make_unique<BendingSweep<T>>(mesh, BendingStiffness{bending, bending}, areal_mass));
     return out;
   }
 };

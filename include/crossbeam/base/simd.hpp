@@ -150,8 +150,8 @@ struct Pack {
   }
 };
 
-/// One lane is a plain number: g++ 12 miscompiles masks of one-element vectors from -O2 on (a stopped
-/// plate was pushed on by its friction, V-CONT-22), and other compilers have no vectors.
+/// One lane is a plain number: g++ 12 miscompiles masks of one-element vectors from -O2 on (a
+/// stopped plate was pushed on by its friction, V-CONT-22), and other compilers have no vectors.
 template <class S>
 struct PackMask<S, 1> {
   bool v;

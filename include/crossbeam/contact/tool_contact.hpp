@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Contact of the fabric's nodes with one rigid tool: penalty with damping, Coulomb friction, culling
-/// of the nodes that provably cannot touch. Theory: docs/theory/contact.md.
+/// Contact of the fabric's nodes with one rigid tool: penalty with damping, Coulomb friction,
+/// culling of the nodes that provably cannot touch. Theory: docs/theory/contact.md.
 
 #include "crossbeam/contact/surface.hpp"
 #include "crossbeam/mesh/nodal_state.hpp"
@@ -78,7 +78,8 @@ class ToolContact {
   /// Contact forces at t_n: adds them to state.f and keeps them for the bookkeeping.
   /// @param travel upper bound of the distance any node or this tool has moved since the start
   virtual void add_forces(NodalState<R>& state, double dt, double travel) = 0;
-  /// Books the work of the step's forces with the velocities a v_centre + b v, over a time `weight`.
+  /// Books the work of the step's forces with the velocities a v_centre + b v, over a time
+  /// `weight`.
   virtual void book(const NodalState<R>& state, double a, double b, double weight) = 0;
   [[nodiscard]] virtual double stored_energy() const = 0;
   /// Contact pressure of every node [kN/mm^2].
@@ -191,7 +192,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const auto touching = (at.gap < zero) && (area > zero);
       if (!any(touching)) {
         const T clearance = select(area > zero, at.clearance, T(std::numeric_limits<R>::max()));
-        // `travel` grows by what node and tool move together: it must use up the clearance first [F-4].
+        // `travel` grows by what node and tool move together: it must use up the clearance first
+        // [F-4].
         safe_until_[b] = travel + static_cast<double>(-lane_maximum(-clearance));
         if (active_[b]) release(n, b);
         continue;

@@ -28,7 +28,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   using R = real_t<T>;
   static constexpr int lanes = lanes_v<T>;
 
-  /// @param planes mirror planes: a yarn that crosses one continues into its mirror image, tag [B-4]
+  /// @param planes mirror planes: a yarn that crosses one continues into its mirror image, tag
+  /// [B-4]
   template <int Corners>
   BendingSweep(const Mesh<Corners>& mesh, const BendingStiffness& stiffness, double areal_mass,
                const SymmetryPlanes& planes = {}) {
@@ -88,8 +89,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     std::vector<double> weight;
     double stiffness = 0;  // D A [kN mm^3]
   };
-  // Stencils that one group holds: of one yarn family, so that they follow each other along a row, and
-  // with the same mirrorings of their columns: bit 0 at x = 0, bit 1 at y = 0.
+  // Stencils that one group holds: of one yarn family, so that they follow each other along a row,
+  // and with the same mirrorings of their columns: bit 0 at x = 0, bit 1 at y = 0.
   struct Key {
     bool is_long;
     int family;
@@ -134,8 +135,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     return out;
   }
 
-  /// A yarn ends at a free edge unless it runs along it. Inside, where no node lies on the yarn's line
-  /// and the elements of a node do not determine the weights, the next ring of nodes helps.
+  /// A yarn ends at a free edge unless it runs along it. Inside, where no node lies on the yarn's
+  /// line and the elements of a node do not determine the weights, the next ring of nodes helps.
   template <int Corners>
   static std::vector<StencilWeight> difference(const Mesh<Corners>& mesh,
                                                const std::vector<Surroundings>& around, int n,

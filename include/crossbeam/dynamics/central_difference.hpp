@@ -32,8 +32,8 @@ class CentralDifference {
   void add(std::unique_ptr<ForceBlock<R>> block) { blocks_.push_back(std::move(block)); }
   void add(std::unique_ptr<ToolContact<R>> tool) { tools_.push_back(std::move(tool)); }
 
-  /// Bound of the critical step [ms], tag [D-3]: all stiffnesses together with the fabric's viscosity,
-  /// and the contacts with their own damping by themselves. Constant over a run.
+  /// Bound of the critical step [ms], tag [D-3]: all stiffnesses together with the fabric's
+  /// viscosity, and the contacts with their own damping by themselves. Constant over a run.
   /// @throws RunError for a model without stiffness
   [[nodiscard]] double critical_step() const {
     double fabric = 0, viscosity = 0, contact = 0, contact_damping = 0, area = 0;
@@ -51,8 +51,8 @@ class CentralDifference {
     return contact > 0 ? std::min(all, stable_step(contact, contact_damping)) : all;
   }
 
-  /// Starts the scheme from the state's positions and velocities (read as v at t = 0), with the step
-  /// dt. Call once, after all blocks and tools were added.
+  /// Starts the scheme from the state's positions and velocities (read as v at t = 0), with the
+  /// step dt. Call once, after all blocks and tools were added.
   void start(double dt) {
     dt_ = require_positive("time_step", dt, "ms");
     time_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// What the time integration asks of a group of elements or stencils. A scene is a list of blocks: what
-/// it does not have costs nothing.
+/// What the time integration asks of a group of elements or stencils. A scene is a list of blocks:
+/// what it does not have costs nothing.
 
 #include "crossbeam/mesh/nodal_state.hpp"
 

@@ -9,8 +9,9 @@
 
 namespace crossbeam {
 
-/// Energies and works at one instant t_n [kN mm]. Stored energies come from the energy functions, not
-/// from summed work: the residual therefore sees a force that is not the gradient of its energy.
+/// Energies and works at one instant t_n [kN mm]. Stored energies come from the energy functions,
+/// not from summed work: the residual therefore sees a force that is not the gradient of its
+/// energy.
 struct EnergyLedger {
   double time = 0;           ///< [ms]
   InternalEnergy internal{};  ///< yarn, shear, bending, hourglass; bulk viscosity's share

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// The membrane forces of a mesh, a batch of elements at a time: relative vectors -> fibre vectors ->
-/// law -> generalised forces -> corners. Theory: docs/theory/sweep.md.
+/// The membrane forces of a mesh, a batch of elements at a time: relative vectors -> fibre vectors
+/// -> law -> generalised forces -> corners. Theory: docs/theory/sweep.md.
 
 #include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/membrane.hpp"
@@ -63,7 +63,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
                                                         180 / std::numbers::pi));
       const double omega_squared = element_omega_squared(mesh, e, stiffness, areal_mass);
       omega_squared_ = std::max(omega_squared_, omega_squared);
-      // mu = b rho c h with h = sqrt(A); it acts where the stiffness acts, mu / stiffness as strong.
+      // mu = b rho c h with h = sqrt(A); it acts where the stiffness acts, mu / stiffness as
+      // strong.
       double area = 0;
       for (const auto& p : Element::coefficients(mesh.corners(e), mesh.fibres[e]))
         area = std::max(area, Element::points * p.weight);

@@ -1,8 +1,8 @@
 #pragma once
 /// @file
 /// Rotation-free bending along the fibre lines: the curvature of a yarn through a node is a second
-/// difference kappa = sum_k w_k x_k of the nodes around it, with constant weights, so that the energy
-/// 1/2 D A |kappa|^2 is quadratic and never negative. Theory: docs/theory/bending.md, [B-1].
+/// difference kappa = sum_k w_k x_k of the nodes around it, with constant weights, so that the
+/// energy 1/2 D A |kappa|^2 is quadratic and never negative. Theory: docs/theory/bending.md, [B-1].
 
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/scalar.hpp"
@@ -31,8 +31,8 @@ struct StencilWeight {
 /// points have 4, good rings below 20; beyond, the ring extrapolates.
 inline constexpr double stencil_limit = 64;
 
-/// Second derivative along the fibre at the centre node (label `centre`) from the nearest node on the
-/// fibre line itself, on each side, tag [B-2]; empty when there is none on one side.
+/// Second derivative along the fibre at the centre node (label `centre`) from the nearest node on
+/// the fibre line itself, on each side, tag [B-2]; empty when there is none on one side.
 inline std::vector<StencilWeight> three_point_difference(
     int centre, const std::vector<StencilNeighbour>& ring) {
   double size = 0;
@@ -50,16 +50,17 @@ inline std::vector<StencilWeight> three_point_difference(
   return {{behind->id, wb}, {centre, -(wa + wb)}, {ahead->id, wa}};
 }
 
-/// The same from any ring of five nodes or more around the centre: of all weights that are exact for
-/// every quadratic field, those closest to the fibre line, tag [B-3]. Empty when the ring does not
-/// determine them well.
+/// The same from any ring of five nodes or more around the centre: of all weights that are exact
+/// for every quadratic field, those closest to the fibre line, tag [B-3]. Empty when the ring does
+/// not determine them well.
 inline std::vector<StencilWeight> quadratic_difference(int centre,
                                                        const std::vector<StencilNeighbour>& ring) {
   double size = 0;
   for (const auto& n : ring) size = std::max(size, std::hypot(n.along, n.across));
   if (ring.size() < 5 || !(size > 0)) return {};
 
-  // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn, n^2.
+  // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn,
+  // n^2.
   using Monomials = Eigen::Matrix<double, 5, 1>;
   std::vector<Monomials> p(ring.size());
   std::vector<double> v(ring.size()), w(ring.size(), 0.0);

@@ -1,8 +1,8 @@
 #pragma once
 /// @file
 /// What every membrane element here shares: its current shape enters through a few relative
-/// vectors D_k = sum_a c_ka x_a with constant integers c, and each Gauss point has the fibre vectors
-/// f_i = F F_i = sum_k t_ik D_k with constant t. Theory: docs/theory/element.md, [E-1].
+/// vectors D_k = sum_a c_ka x_a with constant integers c, and each Gauss point has the fibre
+/// vectors f_i = F F_i = sum_k t_ik D_k with constant t. Theory: docs/theory/element.md, [E-1].
 
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/scalar.hpp"

@@ -1,7 +1,8 @@
 #pragma once
 /// @file
-/// From the relative vectors of an element to its generalised forces, by way of any membrane law and
-/// without forming a matrix (docs/theory/element.md, [E-3]). One template for scalars and packs.
+/// From the relative vectors of an element to its generalised forces, by way of any membrane law
+/// and without forming a matrix (docs/theory/element.md, [E-3]). One template for scalars and
+/// packs.
 
 #include "crossbeam/element/coefficients.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
