@@ -112,49 +112,49 @@ double difference(const Answer& a, const Answer& b) {
 
 }  // namespace
 
-TEST_SUITE("element") {
-  TEST_CASE("V-ELEM-06 batches: every width, path and filling of the lanes gives the same forces") {
-    VERIFY_RANDOM(random, 106);
-    const Scene s = scene(random);
-    Worst in_double, in_float, samples;
-    const auto with = [&]<class T, class Element>(const Answer& reference, Worst& worst,
-                                                  const char* name) {
-      for (bool shuffled : {false, true}) {
-        const Mesh<4>& m = shuffled ? s.shuffled : s.rows;
-        if (lanes_v < T >> 2) {
-          const IndexBatches<4, T> batches(m.elements);
-          REQUIRE((contiguous_batches<T>(m) > 0) == !shuffled);  // both paths are taken
-          bool partial = false;
-          for (int b = 0; b < batches.size(); ++b) partial |= batches[b].active < lanes_v<T>;
-          REQUIRE(partial);
-        }
-        const Answer now = answer<T, Element>(m, s.x, s.v, true);
-        worst.see(difference(reference, now), name, lanes_v<T>, shuffled ? "shuffled" : "rows");
-        for (std::size_t e = 0; e < now.shear.size(); ++e)
-          if (sizeof(real_t<T>) == 8)
-            samples.see(std::abs(now.shear[e] - reference.shear[shuffled ? s.order[e] : e]), name,
-                        lanes_v<T>, shuffled ? "shuffled" : "rows", e);
+TEST_SUITE_BEGIN("element");
+TEST_CASE("V-ELEM-06 batches: every width, path and filling of the lanes gives the same forces") {
+  VERIFY_RANDOM(random, 106);
+  const Scene s = scene(random);
+  Worst in_double, in_float, samples;
+  const auto with = [&]<class T, class Element>(const Answer& reference, Worst& worst,
+                                                const char* name) {
+    for (bool shuffled : {false, true}) {
+      const Mesh<4>& m = shuffled ? s.shuffled : s.rows;
+      if (lanes_v < T >> 2) {
+        const IndexBatches<4, T> batches(m.elements);
+        REQUIRE((contiguous_batches<T>(m) > 0) == !shuffled);  // both paths are taken
+        bool partial = false;
+        for (int b = 0; b < batches.size(); ++b) partial |= batches[b].active < lanes_v<T>;
+        REQUIRE(partial);
       }
-    };
-    const auto widths = [&]<class Element>(const char* name) {
-      const Answer reference = answer<Pack<double, 1>, Element>(s.rows, s.x, s.v, true);
-      REQUIRE(largest(reference.f) > 0.1);
-      with.template operator()<Pack<double, 1>, Element>(reference, in_double, name);
-      with.template operator()<Pack<double, 2>, Element>(reference, in_double, name);
-      with.template operator()<Pack<double, 4>, Element>(reference, in_double, name);
-      with.template operator()<Pack<double, 8>, Element>(reference, in_double, name);
-      with.template operator()<NativePack<float>, Element>(reference, in_float, name);
-      with.template operator()<Pack<float, 4>, Element>(reference, in_float, name);
-    };
-    widths.template operator()<Quadrilateral<1>>("1 point");
-    widths.template operator()<Quadrilateral<4>>("2x2 points");
-    // Lanes compute like scalars; only the order in which elements add to a node differs: a few
-    // roundings of the largest force. The cell is iterated until its slowest lane has converged, so a
-    // lane may get one sweep more: its error is the square of 1e-12.
-    in_double.claim("V-ELEM-06", 5e-15, "double, any width against one lane, relative");
-    samples.claim("V-ELEM-06", 1e-15, "shear angles, and in the order of the elements [rad]");
-    // Coordinates of 50 mm on 5 mm edges round the strain to 6e-7, of strains of order 0.05.
-    in_float.claim("V-ELEM-06", 1e-4, "float against double, relative");
-  }
+      const Answer now = answer<T, Element>(m, s.x, s.v, true);
+      worst.see(difference(reference, now), name, lanes_v<T>, shuffled ? "shuffled" : "rows");
+      for (std::size_t e = 0; e < now.shear.size(); ++e)
+        if (sizeof(real_t<T>) == 8)
+          samples.see(std::abs(now.shear[e] - reference.shear[shuffled ? s.order[e] : e]), name,
+                      lanes_v<T>, shuffled ? "shuffled" : "rows", e);
+    }
+  };
+  const auto widths = [&]<class Element>(const char* name) {
+    const Answer reference = answer<Pack<double, 1>, Element>(s.rows, s.x, s.v, true);
+    REQUIRE(largest(reference.f) > 0.1);
+    with.template operator()<Pack<double, 1>, Element>(reference, in_double, name);
+    with.template operator()<Pack<double, 2>, Element>(reference, in_double, name);
+    with.template operator()<Pack<double, 4>, Element>(reference, in_double, name);
+    with.template operator()<Pack<double, 8>, Element>(reference, in_double, name);
+    with.template operator()<NativePack<float>, Element>(reference, in_float, name);
+    with.template operator()<Pack<float, 4>, Element>(reference, in_float, name);
+  };
+  widths.template operator()<Quadrilateral<1>>("1 point");
+  widths.template operator()<Quadrilateral<4>>("2x2 points");
+  // Lanes compute like scalars; only the order in which elements add to a node differs: a few
+  // roundings of the largest force. The cell is iterated until its slowest lane has converged, so
+  // a lane may get one sweep more: its error is the square of 1e-12.
+  in_double.claim("V-ELEM-06", 5e-15, "double, any width against one lane, relative");
+  samples.claim("V-ELEM-06", 1e-15, "shear angles, and in the order of the elements [rad]");
+  // Coordinates of 50 mm on 5 mm edges round the strain to 6e-7, of strains of order 0.05.
+  in_float.claim("V-ELEM-06", 1e-4, "float against double, relative");
+}
 
-}  // TEST_SUITE
+TEST_SUITE_END();

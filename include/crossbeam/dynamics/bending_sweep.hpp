@@ -147,7 +147,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     weights = quadratic_difference(label(n, 0), neighbours);
     if (!weights.empty()) return weights;
     Surroundings wider = around[n];
-    for (int m : around[n].nodes) wider.nodes.insert(around[m].nodes.begin(), around[m].nodes.end());
+    for (int m : around[n].nodes)
+      wider.nodes.insert(around[m].nodes.begin(), around[m].nodes.end());
     wider.nodes.erase(n);
     return quadratic_difference(label(n, 0), ring(mesh, wider, n, family, planes));
   }
