@@ -123,7 +123,9 @@ TEST_CASE("V-ELEM-06 batches: every width, path and filling of the lanes gives t
       const Mesh<4>& m = shuffled ? s.shuffled : s.rows;
       if (lanes_v < T >> 2) {
         const IndexBatches<4, T> batches(m.elements);
-        REQUIRE((contiguous_batches<T>(m) > 0) == !shuffled);  // both paths are taken
+        // Both paths are taken: rows load whole packs, shuffled elements hardly ever.
+        const double contiguous = double(contiguous_batches<T>(m)) / batches.size();
+        REQUIRE((shuffled ? contiguous < 0.25 : contiguous > 0.5));
         bool partial = false;
         for (int b = 0; b < batches.size(); ++b) partial |= batches[b].active < lanes_v<T>;
         REQUIRE(partial);

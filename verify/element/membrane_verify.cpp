@@ -286,16 +286,16 @@ TEST_CASE(
 
   // 2x2 points integrate the in-plane hourglass u = a xi eta of a square exactly:
   // (2/3) (C + G) a^2 while strains are small.
-  const auto m = rectangle(edge, edge, 1, 1);
-  auto sweep = sweep_of<FourPointKind>(m, LinearLaw<double>{});
+  const auto whole = rectangle(edge, edge, 1, 1);
+  auto four = sweep_of<FourPointKind>(whole, LinearLaw<double>{});
   const double a = 1e-5 * edge;
   Points x;
   for (int n = 0; n < 4; ++n)
-    x.push_back(eigen(m.nodes.get(n)) + Vector3d(n == 0 || n == 3 ? a : -a, 0, 0));
+    x.push_back(eigen(whole.nodes.get(n)) + Vector3d(n == 0 || n == 3 ? a : -a, 0, 0));
   const double expected = (LinearLaw<double>{}.C + LinearLaw<double>{}.G) * 2 / 3 * a * a;
   // The next term of the strain is of relative size a/edge, its square counts; strains of 1e-5
   // keep ten digits.
-  claim("V-ELEM-05", std::abs(energy(sweep, state_at(m, x)) / expected - 1), 1e-8,
+  claim("V-ELEM-05", std::abs(energy(four, state_at(whole, x)) / expected - 1), 1e-8,
         "energy of the hourglass at 2x2 points against its integral, relative");
 
   // Modes without energy of one unstressed element: a flat membrane has the six rigid motions;
