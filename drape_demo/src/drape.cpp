@@ -257,6 +257,12 @@ class QuarterDrape {
                      "a contact penalty too stiff for it");
   }
 
+  /// Where the centre of an element sits on the flat blank [mm].
+  [[nodiscard]] std::array<double, 2> material_centre(int element) const {
+    const auto X = mesh_.corners(element);
+    return {(X[0].x + X[2].x) / 2, (X[0].y + X[2].y) / 2};
+  }
+
   void check_elements(double stroke) const {
     const std::vector<ElementSample> samples = sample();
     const double longest = case_.fabric.cell.contact_length;
@@ -275,10 +281,10 @@ class QuarterDrape {
                " mm after " + std::to_string(case_.fabric.cell_sweeps) + " sweeps, admissible below " +
                detail::to_text(1e-3 * longest);
       if (what.empty()) continue;
-      const auto X = mesh_.corners(static_cast<int>(e));
+      const auto [x, y] = material_centre(static_cast<int>(e));
       throw RunError("stroke " + detail::to_text(stroke) + " mm, element " + std::to_string(e) +
-                     " at material point (" + detail::to_text((X[0].x + X[2].x) / 2) + ", " +
-                     detail::to_text((X[0].y + X[2].y) / 2) + ") mm: " + what);
+                     " at material point (" + detail::to_text(x) + ", " + detail::to_text(y) +
+                     ") mm: " + what);
     }
   }
 
@@ -340,9 +346,8 @@ class QuarterDrape {
       for (double tension : s.tension)
         result_.largest_yarn_tension = std::max(result_.largest_yarn_tension, tension);
       if (std::abs(s.shear_angle) * 180 / pi > std::abs(result_.maximum_shear_deg)) {
-        const auto X = mesh_.corners(e);
         result_.maximum_shear_deg = s.shear_angle * 180 / pi;
-        result_.maximum_shear_material = {(X[0].x + X[2].x) / 2, (X[0].y + X[2].y) / 2};
+        result_.maximum_shear_material = material_centre(e);
       }
     }
     result_.slack_fraction = slack_area / area;

@@ -29,12 +29,4 @@ Vector3<T> strain_to_voigt(const Matrix2<T>& E) {
   return {E(0, 0), E(1, 1), E(0, 1) + E(1, 0)};
 }
 
-/// Symmetric stress tensor of (S11, S22, S12).
-template <class T>
-Matrix2<T> stress_from_voigt(const Vector3<T>& s) {
-  Matrix2<T> S;
-  S << s(0), s(2), s(2), s(1);
-  return S;
-}
-
 }  // namespace crossbeam

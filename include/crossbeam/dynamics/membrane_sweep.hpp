@@ -72,8 +72,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
           std::max(damping_rate_, impedance * std::sqrt(area) / stiffness * omega_squared);
     }
     viscosity_ = options.bulk_viscosity > 0;
+    impedance_ = R(impedance);
     for (int b = 0; b < batches_.size(); ++b)
-      for (int l = 0; l < lanes; ++l) fill_constants(mesh, b, l, impedance);
+      for (int l = 0; l < lanes; ++l) fill_constants(mesh, b, l);
   }
 
   void add_forces(NodalState<R>& state, double dt) override {
@@ -92,7 +93,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       T yarn(R(0)), shear(R(0)), hourglass(R(0));
       for (int p = 0; p < Element::points; ++p) {
         const PointLanes<T, M> point = load_point(b, p);
-        const auto at = law_.evaluate(strain(D, point, active));
+        const auto at = law_.evaluate(strain(PointKinematics<T, M, K>(D, point), active));
         if constexpr (has_energy) yarn = yarn + point.weight * law_.yarn_energy(at);
         shear = shear + point.weight * law_.shear_energy(at);
       }
@@ -130,7 +131,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       for (int p = 0; p < Element::points; ++p) {
         const PointLanes<T, M> point = load_point(b, p);
         const PointKinematics<T, M, K> kinematics(D, point);
-        const auto at = law_.evaluate(strain(D, point, active));
+        const auto at = law_.evaluate(strain(kinematics, active));
         const T cosine = fibre_cosine(at.fibres.beta, at.fibres.lambda1, at.fibres.lambda2,
                                       law_.reference().cosine);
         const T gamma = shear_angle(cosine, law_.reference());
@@ -201,7 +202,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       for (int p = 0; p < Element::points; ++p) {
         const PointLanes<T, M> point = load_point(b, p);
         const PointKinematics<T, M, K> kinematics(D, point);
-        const FibreStrain<T> beta = strain(D, point, active);
+        const FibreStrain<T> beta = strain(kinematics, active);
         const auto at = law_.evaluate(beta);
         FibreStress<T> m = law_.stress(at);
         if constexpr (!has_energy) book_path(b, p, point, beta, at, active);
@@ -257,10 +258,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
 
   /// Strain of a point; idle lanes are kept at rest, whatever nodes they read.
   template <class Mask>
-  CROSSBEAM_INLINE FibreStrain<T> strain(const Vec3<T> (&D)[K], const PointLanes<T, M>& point,
+  CROSSBEAM_INLINE FibreStrain<T> strain(const PointKinematics<T, M, K>& kinematics,
                                          const Mask& active) const {
-    const FibreStrain<T> b =
-        PointKinematics<T, M, K>(D, point).strain(law_.reference().cosine);
+    const FibreStrain<T> b = kinematics.strain(law_.reference().cosine);
     const T zero(R(0));
     return {select(active, b.b11, zero), select(active, b.b22, zero), select(active, b.b12, zero)};
   }
@@ -297,8 +297,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         static_cast<double>(lane_sum(select(active, at.cell.fallback, zero))) + 0.5);
   }
 
-  void fill_constants(const Mesh<corners>& mesh, int b, int lane, double impedance) {
-    impedance_ = R(impedance);
+  void fill_constants(const Mesh<corners>& mesh, int b, int lane) {
     const int e = batches_.tuple(b, lane);
     const auto X = mesh.corners(e);
     const auto points = Element::coefficients(X, mesh.fibres[e]);
