@@ -166,6 +166,8 @@ int report(const fs::path& table, const fs::path& measured, const fs::path& juni
   std::istringstream lines(fs::exists(measured) ? read(measured) : std::string());
   for (std::string line; std::getline(lines, line);) {
     Json m = Json::parse(line);
+    if (m.at("kind") != "measurement") continue;
+    m.erase("kind");
     const auto claim = by_id.find(m.at("id"));
     if (claim == by_id.end()) throw std::runtime_error("no such claim: " + line);
     m.erase("id");
