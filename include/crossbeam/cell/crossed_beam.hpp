@@ -21,7 +21,8 @@ enum class CellStatus {
   converged,
   not_converged,       ///< the iteration did not reach its tolerance
   unstable,            ///< no stable equilibrium on the branch followed (bilateral, second order)
-  outside_kinematics,  ///< a yarn is shortened to nothing, or the input is not a number
+  outside_kinematics,  ///< a yarn is shortened to nothing or drawn out beyond all numbers, or the
+                       ///< input is not a number
 };
 
 /// What a cell answers to the elongations (u1, u2) of its yarns.
@@ -140,6 +141,7 @@ class CrossedBeamCell {
     yarn1_ = {parameters.warp, H1, parameters.bending_boundary_factor};
     yarn2_ = {parameters.weft, parameters.contact_length - H1, parameters.bending_boundary_factor};
     k3_ = parameters.contact_modulus * parameters.contact_area / parameters.contact_length;
+    largest_elongation_ = CellRange<R>(parameters).largest_elongation();
     has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
   }
 
@@ -347,7 +349,10 @@ class CrossedBeamCell {
   /// Status of a solution that was iterated to convergence.
   template <class T>
   void check(const T& u1, const T& u2, Solution<T>& solution) const {
-    if (!(all(u1 > T(-yarn1_.L)) && all(u2 > T(-yarn2_.L)))) {
+    const auto within = [this](const T& u, R L) {
+      return all(u > T(-L)) && all(u < T(largest_elongation_));
+    };
+    if (!(within(u1, yarn1_.L) && within(u2, yarn2_.L))) {
       solution.status = CellStatus::outside_kinematics;
     } else if (ContactKind == Contact::bilateral && solution.status == CellStatus::converged) {
       const T D1 = YarnState<T>(yarn1_, u1, solution.forces.w1).k_hh(yarn1_);
@@ -361,6 +366,7 @@ class CrossedBeamCell {
   CellParameters<R> parameters_{};
   YarnConstants<R> yarn1_{}, yarn2_{};
   R k3_{};
+  R largest_elongation_{};
   bool has_bending_ = false;
 };
 
