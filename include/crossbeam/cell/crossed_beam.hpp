@@ -149,6 +149,8 @@ class CrossedBeamCell {
   [[nodiscard]] const YarnConstants<R>& warp() const { return yarn1_; }
   [[nodiscard]] const YarnConstants<R>& weft() const { return yarn2_; }
   [[nodiscard]] R contact_stiffness() const { return k3_; }
+  /// Elongations from -L up to this one have an answer, tag [C-12].
+  [[nodiscard]] R largest_elongation() const { return largest_elongation_; }
 
   /// Cell in equilibrium; its energy and tangent are computed only when asked for.
   template <class T>

@@ -15,14 +15,15 @@ CROSSBEAM_INLINE Vec3<T> spread(const Vec3<R>& v) {
   return {T(v.x), T(v.y), T(v.z)};
 }
 
-/// Distance of a round tool: |radial| - radius, along the radial direction [T-5]. On the centre,
-/// where every direction is as good, the normal is the given one.
+/// Distance of a round tool: |radial| - radius, along the radial direction [T-5]. On the centre (or
+/// so near that the squared distance loses its digits), where every direction is as good, the normal
+/// is the given one.
 template <class T, class R>
 CROSSBEAM_INLINE SurfaceGap<T> round_gap(const Vec3<T>& radial, const R& radius,
                                          const Vec3<R>& at_centre) {
   using std::sqrt;
   const T squared = dot(radial, radial);
-  const auto off_centre = squared > T(R(0));
+  const auto off_centre = !(squared <= T(least_square<R>()));  // a NaN stays one
   const T length = sqrt(select(off_centre, squared, T(R(1))));
   const T inverse = T(R(1)) / length;
   const Vec3<T> normal{select(off_centre, radial.x * inverse, T(at_centre.x)),

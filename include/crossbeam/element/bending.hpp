@@ -32,7 +32,8 @@ struct StencilWeight {
 inline constexpr double stencil_limit = 64;
 
 /// Second derivative along the fibre at the centre node (label `centre`) from the nearest node on
-/// the fibre line itself, on each side, tag [B-2]; empty when there is none on one side.
+/// the fibre line itself, on each side, tag [B-2]; empty when there is none on one side, or none at
+/// a distance that can be squared.
 inline std::vector<StencilWeight> three_point_difference(
     int centre, const std::vector<StencilNeighbour>& ring) {
   double size = 0;
@@ -40,13 +41,14 @@ inline std::vector<StencilWeight> three_point_difference(
   const StencilNeighbour *ahead = nullptr, *behind = nullptr;
   for (const auto& n : ring) {
     // On the line up to rounding of the mesh coordinates.
-    if (std::abs(n.across) > 1e-9 * size) continue;
+    if (!(std::abs(n.across) <= 1e-9 * size)) continue;
     if (n.along > 0 && (!ahead || n.along < ahead->along)) ahead = &n;
     if (n.along < 0 && (!behind || n.along > behind->along)) behind = &n;
   }
   if (!ahead || !behind) return {};
   const double a = ahead->along, b = -behind->along;
   const double wa = 2 / (a * (a + b)), wb = 2 / (b * (a + b));
+  if (!(std::isfinite(wa + wb) && std::isfinite(size))) return {};
   return {{behind->id, wb}, {centre, -(wa + wb)}, {ahead->id, wa}};
 }
 
@@ -57,7 +59,7 @@ inline std::vector<StencilWeight> quadratic_difference(int centre,
                                                        const std::vector<StencilNeighbour>& ring) {
   double size = 0;
   for (const auto& n : ring) size = std::max(size, std::hypot(n.along, n.across));
-  if (ring.size() < 5 || !(size > 0)) return {};
+  if (ring.size() < 5 || !(size > 0 && std::isfinite(size))) return {};
 
   // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn,
   // n^2.
@@ -91,7 +93,7 @@ inline std::vector<StencilWeight> quadratic_difference(int centre,
     out.push_back({ring[k].id, weight});
     sum += std::abs(w[k]);
   }
-  if (!(sum <= stencil_limit)) return {};
+  if (!(sum <= stencil_limit && std::isfinite(out[0].weight))) return {};
   return out;
 }
 

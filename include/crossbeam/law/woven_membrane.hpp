@@ -204,10 +204,13 @@ MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
 
 /// Cauchy stress (Eq. 21) from S and the surface gradient; J is the area ratio. For a host whose J
 /// is that of the volume, give its thickness stretch: the membrane force does not change, tag [L-4].
+/// @throws InputError for a collapsed surface, J = 0, which has no Cauchy stress
 template <class T>
 Matrix3<T> cauchy_stress(const Matrix2<T>& S, const Base<T>& gradient, const T& area_ratio,
                          const T& thickness_stretch = T(1)) {
-  return gradient * S * gradient.transpose() / (area_ratio * thickness_stretch);
+  const T J = area_ratio * thickness_stretch;
+  require_positive("area_ratio * thickness_stretch", passive(J), "-");
+  return gradient * S * gradient.transpose() / J;
 }
 /// @}
 
