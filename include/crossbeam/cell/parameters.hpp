@@ -83,15 +83,15 @@ struct CellRange {
     largest_length = maximum(l1, l2);
   }
 
-  /// Whether products of three stiffnesses and a length, and of a stiffness and three lengths, keep
-  /// their digits: the solver, the energy and the tangent form them, tag [C-12].
+  /// Whether products of three stiffnesses, with and without a length, and of a stiffness and three
+  /// lengths keep their digits: the solver, the energy and the tangent form them, tag [C-12].
   [[nodiscard]] bool workable() const {
     const R eps = std::numeric_limits<R>::epsilon();
-    const R low = std::numeric_limits<R>::min() / (eps * eps);
+    const R low = std::numeric_limits<R>::min() / (eps * eps * eps);
     const R high = std::numeric_limits<R>::max() * eps;
     const R k = least_stiffness, K = total_stiffness, l = least_length, L = largest_length;
-    return l * l >= low && k * k * k * l >= low && k * l * l * l >= low &&  //
-           L * L <= high && K * K * K * L <= high && K * L * L * L <= high;
+    return l * l >= low && minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low &&  //
+           L * L <= high && maximum(R(1), L) * K * K * K <= high && K * L * L * L <= high;
   }
 
   /// Elongations below it keep forces and energies finite, tag [C-12].
@@ -132,8 +132,8 @@ void validate(const CellParameters<R>& p, const std::string& prefix = "cell") {
                          " kN/mm (E A / l0 of the yarns, E3 A3 / L3) on lengths of " + detail::to_text(range.least_length) +
                          " to " + detail::to_text(range.largest_length),
                      "mm",
-                     "stiffness^3 length and stiffness length^3 must be numbers with all their "
-                     "digits: choose other units");
+                     "stiffness^3, times a length or not, and stiffness length^3 must be numbers "
+                     "with all their digits: choose other units");
 }
 
 }  // namespace crossbeam

@@ -34,7 +34,7 @@ class HeightTable {
   HeightTable(const Source& source, const HeightTableGrid<R>& grid)
       : x_(axis("x", grid.x0, grid.x1, grid.spacing, grid.mirror_x)),
         y_(axis("y", grid.y0, grid.y1, grid.spacing, grid.mirror_y)),
-        stride_(static_cast<std::size_t>(x_.cells) + 2),
+        stride_(checked_stride(x_, y_, grid.spacing)),
         coefficients_(stride_ * (static_cast<std::size_t>(y_.cells) + 2)) {
     for (int j = 0; j < y_.cells; ++j)
       for (int i = 0; i < x_.cells; ++i)
@@ -103,6 +103,15 @@ class HeightTable {
     const R exact = (high - low) / R(cells);
     return {low, exact, require_finite("1 / table.spacing along " + name, R(1) / exact, "1/mm"),
             cells, mirror};
+  }
+
+  static std::size_t checked_stride(const Axis& x, const Axis& y, R spacing) {
+    // Beyond, the table would fill the memory: the tool of the drape has a few 100 000 cells.
+    constexpr double most = 1e8;
+    if (!(static_cast<double>(x.cells) * y.cells <= most))
+      throw InputError("table.spacing", detail::to_text(spacing), "mm",
+                       "so large that the table has at most 1e8 cells");
+    return static_cast<std::size_t>(x.cells) + 2;
   }
 
   template <class Source>

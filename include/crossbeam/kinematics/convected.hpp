@@ -50,7 +50,7 @@ Matrix2<T> convected_strain_from_increment(const Base<T>& increment, const Base<
 namespace detail {
 
 /// |A1 x A2| of an element base, checked: squares of its lengths and of the area keep their digits,
-/// and the vectors are not parallel up to their rounding.
+/// and the vectors are not parallel up to their rounding (a thousand of them).
 /// @throws InputError otherwise
 template <class T>
 T checked_area(const std::string& name, const Base<T>& base) {
@@ -60,7 +60,7 @@ T checked_area(const std::string& name, const Base<T>& base) {
   const T lengths = base.col(0).dot(base.col(0)) * base.col(1).dot(base.col(1));
   const R eps = epsilon_of<T>();
   if (!(det >= T(std::numeric_limits<R>::min() / (eps * eps)) &&
-        lengths <= T(std::numeric_limits<R>::max()) && det > T(R(256) * eps * eps) * lengths))
+        lengths <= T(std::numeric_limits<R>::max()) && det > T(R(1 << 20) * eps * eps) * lengths))
     throw InputError(name, "area " + detail::to_text(passive(det)) + "^(1/2)", "mm^2",
                      "two finite base vectors that span an area > 0");
   return sqrt(det);
