@@ -263,10 +263,11 @@ Outcome check_law(const Law& law, const crossbeam::Matrix2<double>& E, bool shea
     if (!(std::isfinite(r.energy) && (r.energy >= 0 || !shear_hardens))) broken("energy", r.energy, where());
     if (!r.dS_dE.allFinite()) broken("tangent", r.dS_dE, where());
   }
-  // A metric that no two vectors have: the strain cannot be.
+  // A metric that no two vectors have, and not by rounding: the strain cannot be.
   const long double C11 = 1 + 2 * static_cast<long double>(E(0, 0)),
                     C22 = 1 + 2 * static_cast<long double>(E(1, 1)), C12 = 2.0L * E(0, 1);
-  if (!(C11 > 0 && C22 > 0 && C11 * C22 * (1 + 1e-6L) > C12 * C12))
+  const long double rounding = 1e-12L * (1 + C11 * C11 + C22 * C22 + C12 * C12);
+  if (!(C11 + C22 > 0 && C11 * C22 > C12 * C12 - rounding))
     broken("no such strain", where());
   return Outcome::answered;
 }

@@ -84,14 +84,16 @@ struct CellRange {
   }
 
   /// Whether products of three stiffnesses, with and without a length, and of a stiffness and three
-  /// lengths keep their digits: the solver, the energy and the tangent form them, tag [C-12].
+  /// lengths keep their digits, and a stiffness over a squared length: solver, energy and tangent
+  /// form them, tag [C-12].
   [[nodiscard]] bool workable() const {
     const R eps = std::numeric_limits<R>::epsilon();
     const R low = std::numeric_limits<R>::min() / (eps * eps * eps);
     const R high = std::numeric_limits<R>::max() * eps;
     const R k = least_stiffness, K = total_stiffness, l = least_length, L = largest_length;
-    return l * l >= low && minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low &&  //
-           L * L <= high && maximum(R(1), L) * K * K * K <= high && K * L * L * L <= high;
+    return l * l >= low && minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low &&
+           k >= low * L * L && L * L <= high && maximum(R(1), L) * K * K * K <= high &&
+           K * L * L * L <= high;
   }
 
   /// Elongations below it keep forces and energies finite, tag [C-12].
