@@ -74,6 +74,16 @@ Vec3<R> require_finite_point(const std::string& field, const Vec3<R>& p, const s
   return p;
 }
 
+/// A finite point whose coordinates can be squared.
+template <class R>
+Vec3<R> require_place(const std::string& field, const Vec3<R>& p, const std::string& unit) {
+  require_finite_point(field, p, unit);
+  require_square(field + ".x", p.x, unit);
+  require_square(field + ".y", p.y, unit);
+  require_square(field + ".z", p.z, unit);
+  return p;
+}
+
 /// Returns v / |v|. The largest component is divided out first: no length over- or underflows.
 template <class R>
 Vec3<R> require_direction(const std::string& field, const Vec3<R>& v) {
