@@ -172,18 +172,46 @@ void check_table(const ShearInput& shear, const Locator& where) {
            fmt::format("{}", shear.angle.back()), "rad", "a number < pi/2");
 }
 
+/// What the laws themselves refuse in the precision of the run, with the place in the file.
+template <class R>
+void check_laws(const FabricInput& fabric, const Locator& where) {
+  const auto located = [&where](const std::vector<std::string>& fields, const auto& build) {
+    try {
+      build();
+    } catch (const InputError& error) {
+      std::vector<std::string> places;
+      for (const auto& field : fields) places.push_back(where(field));
+      throw InputError(error, first_known(places));
+    }
+  };
+  const auto real = [](const std::vector<double>& list) {
+    return std::vector<R>(list.begin(), list.end());
+  };
+  located({"fabric.cell", "integration.precision"},
+          [&] { crossbeam::validate(fabric.cell.cast<R>(), "fabric.cell"); });
+  const ShearInput& shear = fabric.shear;
+  if (shear.kind == ShearLawKind::constant)
+    located({"fabric.shear.modulus", "integration.precision"}, [&] {
+      static_cast<void>(ConstantShear<R>(R(shear.modulus), FibreAngle<R>::right(), shear.measure));
+    });
+  if (shear.kind == ShearLawKind::polynomial)
+    located({"fabric.shear.coefficients", "integration.precision"},
+            [&] { static_cast<void>(PolynomialCurve<R>(real(shear.coefficients))); });
+  if (shear.kind == ShearLawKind::tabulated)
+    located({"fabric.shear.angle", "integration.precision"}, [&] {
+      static_cast<void>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)));
+    });
+}
+
 void check_case(const DrapeCase& c, const Locator& where) {
   RangeCheck ranges(where);
   visit_fields(c, ranges);
-  try {
-    crossbeam::validate(c.fabric.cell, "fabric.cell");
-  } catch (const InputError& error) {
-    // Its single fields are in range: what is left is a rule between them, of a cell as a whole.
-    throw InputError(error, where("fabric.cell"));
-  }
-
   if (c.fabric.shear.kind == ShearLawKind::polynomial) check_polynomial(c.fabric.shear, where);
   if (c.fabric.shear.kind == ShearLawKind::tabulated) check_table(c.fabric.shear, where);
+  if (c.integration.precision == Precision::float_)
+    check_laws<float>(c.fabric, where);
+  else
+    check_laws<double>(c.fabric, where);
 
   const double smaller = std::min(c.blank.half_width, c.blank.half_length);
   if (c.blank.element_size > smaller / 2)

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
 /// toml++ with its assertions as exceptions. Release 3.3 asserts what depends on the text it reads
-/// (two commas in a row in a list, for one): the program would stop, or with NDEBUG go on as if it
+/// (no brace after a comma in a list, for one): the program would stop, or with NDEBUG go on as if it
 /// were not so.
 
 #include <stdexcept>

@@ -59,6 +59,25 @@ class FieldText {
   crossbeam::drape::FieldPath path_;
 };
 
+/// The laws of a case in the precision of its run.
+template <class R>
+void build(const crossbeam::drape::FabricInput& fabric) {
+  using namespace crossbeam;
+  using crossbeam::drape::ShearLawKind;
+  const auto real = [](const std::vector<double>& list) {
+    return std::vector<R>(list.begin(), list.end());
+  };
+  static_cast<void>(CrossedBeamCell<R>(fabric.cell.cast<R>()));
+  static_cast<void>(SecondOrderCell<R>(fabric.cell.cast<R>()));
+  const auto& shear = fabric.shear;
+  if (shear.kind == ShearLawKind::constant)
+    static_cast<void>(ConstantShear<R>(R(shear.modulus), FibreAngle<R>::right(), shear.measure));
+  if (shear.kind == ShearLawKind::polynomial)
+    static_cast<void>(PolynomialCurve<R>(real(shear.coefficients)));
+  if (shear.kind == ShearLawKind::tabulated)
+    static_cast<void>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)));
+}
+
 /// A text is a case that can be run, every field admissible, or it is refused with its line.
 inline Outcome check_scene(std::string_view text) {
   using namespace crossbeam;
@@ -76,15 +95,10 @@ inline Outcome check_scene(std::string_view text) {
   // What the drape builds of it must not be refused any more.
   try {
     validate(scene);
-    const FibreAngle<double> angle = FibreAngle<double>::right();
-    const ShearInput& shear = scene.fabric.shear;
-    const CrossedBeamCell<double> cell(scene.fabric.cell);
-    if (shear.kind == ShearLawKind::constant)
-      static_cast<void>(ConstantShear<double>(shear.modulus, angle, shear.measure));
-    if (shear.kind == ShearLawKind::polynomial)
-      static_cast<void>(PolynomialCurve<double>(shear.coefficients));
-    if (shear.kind == ShearLawKind::tabulated)
-      static_cast<void>(TabulatedCurve<double>(shear.angle, shear.traction));
+    if (scene.integration.precision == Precision::float_)
+      build<float>(scene.fabric);
+    else
+      build<double>(scene.fabric);
   } catch (const InputError& error) {
     broken("accepted, but not to be built:", error.what());
   }
