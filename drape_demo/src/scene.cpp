@@ -345,8 +345,11 @@ class TomlReader {
   [[noreturn]] void refuse(const std::string& field, const toml::node& node,
                            const std::string& unit, const std::string& admissible) const {
     std::ostringstream value;
+    // Not by toml++, whose layout of a list of small numbers casts negative ones to unsigned.
     if (node.is_table())
       value << "{...}";
+    else if (const auto* array = node.as_array())
+      value << fmt::format("[{} values]", array->size());
     else
       node.visit([&value](const auto& typed) { value << typed; });
     throw InputError(field, value.str(), unit == "-" ? "" : unit, admissible + at(node));

@@ -42,7 +42,7 @@ void mutate(std::string& text, verify::Random& random) {
       "1979-05-27T07:32:00Z", "\\u0000", "a.b.c.d = 1\n", "[fabric.cell]\n", "inf", "0"};
   const double kind = random.uniform(0, 4);
   if (kind < 1 && !text.empty()) {
-    text[place() % text.size()] = static_cast<char>(random.uniform(0, 256));
+    text[place() % text.size()] = static_cast<char>(static_cast<int>(random.uniform(0, 256)));
   } else if (kind < 2) {
     const std::size_t at = place();
     text.erase(at, static_cast<std::size_t>(random.uniform(1, 30)));
