@@ -19,18 +19,6 @@ using verify::Worst;
 
 using Bending = BendingSweep<Lane>;
 
-/// Distorted inside, straight along the border.
-Points inner_distortion(int nx, int ny, double edge, double distortion, verify::Random& random) {
-  Points X = grid(nx, ny, edge, distortion, random);
-  for (int i = 0; i <= nx; ++i)
-    for (int j = 0; j <= ny; ++j) {
-      Vector3d& p = X[static_cast<std::size_t>(i * (ny + 1) + j)];
-      if (i == 0 || i == nx) p.x() = edge * i;
-      if (j == 0 || j == ny) p.y() = edge * j;
-    }
-  return X;
-}
-
 /// Area of the nodes that carry a stencil: everything but the rim.
 template <int Corners>
 double inner_area(const Mesh<Corners>& m, int nx, int ny) {

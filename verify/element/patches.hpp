@@ -41,6 +41,19 @@ inline Points grid(int nx, int ny, double edge, double distortion, verify::Rando
   return X;
 }
 
+/// Distorted inside, straight along the border.
+inline Points inner_distortion(int nx, int ny, double edge, double distortion,
+                               verify::Random& random) {
+  Points X = grid(nx, ny, edge, distortion, random);
+  for (int i = 0; i <= nx; ++i)
+    for (int j = 0; j <= ny; ++j) {
+      Eigen::Vector3d& p = X[static_cast<std::size_t>(i * (ny + 1) + j)];
+      if (i == 0 || i == nx) p.x() = edge * i;
+      if (j == 0 || j == ny) p.y() = edge * j;
+    }
+  return X;
+}
+
 /// Quadrilaterals of the grid, or each of them cut along one diagonal, in alternating directions.
 template <int Corners>
 std::vector<std::array<int, Corners>> cells(int nx, int ny) {
