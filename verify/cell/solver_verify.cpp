@@ -27,28 +27,6 @@ using verify::Cell;
 using verify::converged;
 using verify::Parameters;
 
-using LongYarn = crossbeam::YarnState<long double>;
-
-/// Violation of the equilibrium conditions at an answer, in long double: vertical forces g1 = g2 = q
-/// relative to EA/l0 L3 of the stiffer yarn, closure relative to L3, and the signs.
-double residual(const Cell& cell, double u1, double u2, const Answer& a) {
-  const LongYarn y1(cell.warp(), static_cast<long double>(u1),
-                    static_cast<long double>(a.forces.w1));
-  const LongYarn y2(cell.weft(), static_cast<long double>(u2),
-                    static_cast<long double>(a.forces.w2));
-  const double L3 = cell.parameters().contact_length;
-  const double force = std::max(cell.warp().ka, cell.weft().ka) * L3;
-  const double q = a.forces.q;
-  const double g1 = static_cast<double>(y1.vertical_force(cell.warp()));
-  const double g2 = static_cast<double>(y2.vertical_force(cell.weft()));
-  // Contact law: shortening q/k3 when it presses, a gap when it does not.
-  const double gap = (a.forces.w1 + a.forces.w2 + q / cell.contact_stiffness()) / L3;
-  const double contact = q > 0 ? std::abs(gap) : std::max(-gap, 0.0);
-  const double heights = std::max({-(cell.warp().H + a.forces.w1), -(cell.weft().H + a.forces.w2),
-                                   0.0}) / L3;
-  return std::max({std::abs(g1 - q) / force, std::abs(g2 - q) / force, contact, heights});
-}
-
 /// Equilibrium by two nested bisections on monotone functions: slow, and free of Newton, start
 /// values and every formula of the solver but the yarn's energy gradient.
 struct Bisection {
@@ -119,7 +97,7 @@ TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine
       most = std::max(most, a.sweeps);
       above_nine += a.sweeps > 9;
       failures += !converged(a);
-      worst_residual.see(residual(cell, u1, u2, a), "fabric", f, "u =", u1, u2, "I1 =",
+      worst_residual.see(verify::violation<long double>(cell, u1, u2, a), "fabric", f, "u =", u1, u2, "I1 =",
                          cell.parameters().warp.second_moment_of_area, "E2 =",
                          cell.parameters().weft.youngs_modulus, "L3 =",
                          cell.parameters().contact_length, "sweeps", a.sweeps);

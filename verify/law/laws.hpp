@@ -15,7 +15,7 @@ namespace verify {
 
 template <class R>
 R radians(int degrees) {
-  return R(degrees) * (std::numbers::pi_v<R> / 180);
+  return R(degrees) * (crossbeam::detail::half_pi<R>() / R(90));
 }
 
 template <class R>
