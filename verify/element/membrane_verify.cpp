@@ -35,21 +35,6 @@ auto sweep_of(const Mesh<corners_of<Kind>>& m, const Law& law,
   return MembraneSweep<Lane, typename Kind::Element, Law>(m, law, areal_mass, options);
 }
 
-/// Nodal gradient of the energy under a homogeneous P, from the border alone.
-template <int Corners>
-Points border_forces(const Mesh<Corners>& m, const Eigen::Matrix<double, 3, 2>& P,
-                     const Base<double>& axes) {
-  Points out(m.node_count, Vector3d::Zero());
-  const Vector3d normal = axes.col(0).cross(axes.col(1));
-  for (const auto& [tail, head] : border<Corners>(m.elements)) {
-    const Vector3d side = eigen(m.nodes.get(head)) - eigen(m.nodes.get(tail));
-    const Vector3d force = P * (axes.transpose() * side.cross(normal)) / 2;
-    out[tail] += force;
-    out[head] += force;
-  }
-  return out;
-}
-
 }  // namespace
 
 TEST_SUITE_BEGIN("element");

@@ -6,6 +6,7 @@
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
 #include "crossbeam/verification/cell_battery.hpp"
+#include "crossbeam/verification/strains.hpp"
 
 #include <Eigen/Geometry>
 
@@ -58,31 +59,6 @@ concept ElasticMembraneLaw = MembraneLaw<Law, double> &&
 };
 
 namespace detail {
-
-/// Cartesian strain of given fibre stretches and a shear angle.
-inline Matrix2<double> strain_of(double stretch1, double stretch2, double shear,
-                                 const FibreAngle<double>& reference) {
-  Matrix2<double> f, F;
-  const double delta = reference.delta;
-  f << stretch1, stretch2 * std::cos(delta - shear), 0, stretch2 * std::sin(delta - shear);
-  F << 1, 0, 0, 1;
-  F.col(1) << reference.cosine, reference.sine;
-  Matrix2<double> inverse;
-  inverse << F(1, 1), -F(0, 1), -F(1, 0), F(0, 0);
-  const Matrix2<double> gradient = f * inverse / (F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
-  return (gradient.transpose() * gradient - Matrix2<double>::Identity()) / 2;
-}
-
-/// Fibres -2..3 %, shear up to 0.5 rad, fibres at least 0.4 rad from falling together.
-inline FibreStrain<double> random_fibre_strain(Random& random, const FibreAngle<double>& reference) {
-  using std::numbers::pi;
-  double shear = 0;
-  do {
-    shear = random.uniform(-0.5, 0.5);
-  } while (reference.delta - shear < 0.4 || reference.delta - shear > pi - 0.4);
-  const double a = random.uniform(0.98, 1.03), b = random.uniform(0.98, 1.03);
-  return fibre_strain<double>(strain_of(a, b, shear, reference), fibre_from_cartesian(reference));
-}
 
 inline FibreStrain<double> moved(const FibreStrain<double>& b, const Eigen::Vector3d& h, double eps) {
   return {b.b11 + eps * h(0), b.b22 + eps * h(1), b.b12 + eps * h(2)};
@@ -248,7 +224,7 @@ void verify_law(Battery& battery, const Law& law) {
   TaylorSlopes energy(2), stress(2);
   Worst deficit, lanes;
   for (int sample = 0; sample < 60; ++sample) {
-    const FibreStrain<double> b = detail::random_fibre_strain(random, law.reference());
+    const FibreStrain<double> b = random_fibre_strain(random, law.reference());
     const Eigen::Vector3d h = random.vector(1), g = gradient_at(b);
     const double W = energy_at(b);
     const Eigen::Matrix3d H = detail::matrix(law.hessian(law.evaluate(b)));
