@@ -5,6 +5,7 @@
 #include "crossbeam/adapters/autodiff.hpp"
 #include "element/patches.hpp"
 #include "support/claim.hpp"
+#include "support/plots.hpp"
 #include "support/taylor_test.hpp"
 
 #include <doctest/doctest.h>
@@ -389,6 +390,25 @@ TEST_CASE("V-ELEM-07 fibres at 45 degrees lock an element of 2x2 points and not 
   // Within the next term of the series, (curvature h)^2 = 1e-3 at these meshes.
   claim("V-ELEM-07", std::abs(rate(FourPointKind{}) - 2), 0.05, "rate of 2x2 points, off 2");
   claim("V-ELEM-07", std::abs(rate(OnePointKind{}) - 4), 0.05, "rate of one point, off 4");
+
+  const auto over_h = [&](const char* name, auto kind, double warp) {
+    verify::Curve energies{name, {}, {}};
+    for (int n = 4; n <= 64; n *= 2) {
+      energies.x.push_back(40.0 / n);
+      energies.y.push_back(stored(kind, law, n, warp).yarn / one.shear);
+    }
+    return energies;
+  };
+  verify::Plot plot{"V-ELEM-07", "Tension locking", "element size [mm]",
+                    "yarn energy over shear energy", true, true,
+                    {over_h("2x2 points, 45 deg", FourPointKind{}, pi / 4),
+                     over_h("one point, 45 deg", OnePointKind{}, pi / 4),
+                     over_h("2x2 points, aligned", FourPointKind{}, 0)},
+                    "A shear that strains no yarn: the yarn energy should be nothing. 2x2 points at "
+                    "45 deg store more of it than the whole shear; the one-point element does not."};
+  plot.curves.push_back(verify::guide("order 2", 2, plot.curves[0]));
+  plot.curves.push_back(verify::guide("order 4", 4, plot.curves[1]));
+  verify::show(plot);
 }
 
 namespace {
@@ -459,6 +479,10 @@ TEST_CASE("V-ELEM-08 a manufactured solution is approached with order 2") {
   // depend on it.
   const auto law = fabric(fibre_angle, 2.0);
   Worst orders;
+  verify::Plot plot{"V-ELEM-08", "A manufactured solution", "element size [mm]",
+                    "root mean square error [mm]", true, true, {},
+                    "A taut sheet under the load that belongs to a given map in space: all elements "
+                    "approach the map with order 2."};
   for_each_kind([&](auto kind) {
     using Kind = decltype(kind);
     using T = NativePack<double>;
@@ -504,7 +528,12 @@ TEST_CASE("V-ELEM-08 a manufactured solution is approached with order 2") {
     REQUIRE(e8 < 0.1);  // mm, of a deflection of 1 mm
     orders.see(std::abs(std::log2(e8 / e16) - 2), Kind::name, "8 to 16", e8, e16);
     orders.see(std::abs(std::log2(e16 / e32) - 2), Kind::name, "16 to 32", e16, e32);
+    constexpr double side = Manufactured::side;
+    plot.curves.push_back({Kind::name, {side / 8, side / 16, side / 32},
+                           {side * e8, side * e16, side * e32}});
   });
+  plot.curves.push_back(verify::guide("order 2", 2, plot.curves[0], 0.5));
+  verify::show(plot);
   // The next term is of relative size (pi h / side)^2 = 0.15 at the coarsest mesh.
   orders.claim("V-ELEM-08", 0.15, "distance of the order from 2");
 }
