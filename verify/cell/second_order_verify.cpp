@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace {
@@ -72,6 +73,33 @@ TEST_CASE("V-CELL-28 to first order the second-order cell and the energy cell ag
                 row.e1, row.e2, "weft");
   }
   printed.claim("V-CELL-28", 0.51, "the table of P against E-U, in units of its last digit");
+
+  verify::Plot plot{"V-CELL-28", "P against E-U", "warp strain [%]", "warp force [kN]", false, false,
+                    {}, "E-U is the energy cell, P the paper's second-order cell: the same under balanced "
+                    "strain, P softer where the weft is held and far too soft where it contracts."};
+  struct Path {
+    const char* name;
+    double weft;
+  };
+  for (const Path& path : {Path{"weft as the warp", 1}, Path{"weft held", 0},
+                           Path{"weft minus half the warp", -0.5}}) {
+    verify::Curve e{std::string("E-U, ") + path.name, {}, {}};
+    verify::Curve p{std::string("P, ") + path.name, {}, {}, verify::Curve::Style::points};
+    for (int k = 0; k <= 30; ++k) {
+      const double strain = 0.1 * k;
+      e.x.push_back(strain);
+      e.y.push_back(
+          answer(energy, strain / 100 * L, path.weft * strain / 100 * L).forces.F1);
+      if (k % 2 != 0) continue;
+      const auto s = solve(second_order, strain, path.weft * strain);
+      REQUIRE(s.status == CellStatus::converged);
+      p.x.push_back(strain);
+      p.y.push_back(s.forces.F1);
+    }
+    plot.curves.push_back(e);
+    plot.curves.push_back(p);
+  }
+  verify::show(plot);
 }
 
 TEST_CASE("V-CELL-16 the second-order cell creates energy around loops: it has no potential") {

@@ -106,6 +106,28 @@ TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine
   std::string table;
   for (int k = 0; k <= most; ++k) table += " " + std::to_string(histogram[k]);
   INFO("states by sweeps 0, 1, ...:", table);
+  verify::Curve bars;
+  for (int k = 0; k <= most; ++k) {
+    bars.x.push_back(k);
+    bars.y.push_back(static_cast<double>(histogram[k]));
+  }
+  verify::show(verify::Plot{"V-CELL-11", "Sweeps to convergence", "sweeps", "states", false, true,
+                            {bars},
+                            "200000 states of random fabrics, strains -20..10 %: nearly all are done "
+                            "after a handful of sweeps, and the tail dies out.", true});
+  verify::Map map{"V-CELL-11", "Sweeps of Table 1", "warp strain [%]", "weft strain [%]", "sweeps",
+                  {}, {}, {},
+                  "Three or four nearly everywhere, six where one yarn is slack and the other about to "
+                  "be straight; one at rest."};
+  const Cell cell_of_table(verify::table_1());
+  for (int i = -40; i <= 40; ++i) {
+    map.at_x.push_back(0.125 * i);
+    map.at_y.push_back(0.125 * i);
+    map.values.emplace_back();
+    for (int j = -40; j <= 40; ++j)
+      map.values.back().push_back(answer(cell_of_table, 2.5 * 0.00125 * j, 2.5 * 0.00125 * i).sweeps);
+  }
+  verify::show(map);
   REQUIRE(states == 200000);
   verify::claim("V-CELL-11", static_cast<double>(failures), 0,
                 "failures in 200000 random states of 22500 random fabrics and Table 1");
@@ -188,6 +210,13 @@ TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the pri
   // The numbers of the table in docs/theory/cell.md, rounded up; the fourth column is round-off.
   const std::array<double, 5> drape_table{0, 1.6e-3, 7.1e-7, 1.4e-13, 2e-15};
   const std::array<double, 5> wide_table{0, 1.7e-3, 9.5e-6, 2.5e-9, 4e-15};
+  const std::vector<double> counts{1, 2, 3, 4};
+  verify::show(verify::Plot{
+      "V-CELL-12", "Error of a fixed number of sweeps, Table 1", "sweeps", "largest force error [kN]",
+      false, true,
+      {{"strains -2..3 %", counts, {drape.begin() + 1, drape.end()}},
+       {"strains -20..10 %", counts, {wide.begin() + 1, wide.end()}}},
+      "The number of right digits doubles with each sweep until round-off; forces are up to 3 kN."});
   for (int n = 1; n <= 4; ++n) {
     const std::string sweeps = std::to_string(n) + " sweeps [kN]";
     verify::claim("V-CELL-12", drape[n], drape_table[n], "Table 1, strains -2..3 %, " + sweeps);
@@ -214,14 +243,21 @@ TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the pri
       }
     }
   }
+  verify::Curve most_states{"99 % of the states", {}, {}}, all_states{"all states", {}, {}};
   for (std::size_t n = 0; n < sweeps.size(); ++n) {
     std::sort(errors[n].begin(), errors[n].end());
+    for (auto* curve : {&most_states, &all_states}) curve->x.push_back(sweeps[n]);
+    most_states.y.push_back(errors[n][errors[n].size() * 99 / 100]);
+    all_states.y.push_back(errors[n].back());
     const std::string count = std::to_string(sweeps[n]) + " sweeps";
     verify::claim("V-CELL-12", errors[n][errors[n].size() * 99 / 100], 2 * percentile_99[n],
                   "any fabric, strains -20..10 %, 99 % of the states, as a strain, " + count);
     verify::claim("V-CELL-12", errors[n].back(), 2 * largest[n],
                   "any fabric, strains -20..10 %, largest, as a strain, " + count);
   }
+  verify::show(verify::Plot{"V-CELL-12", "Error of a fixed number of sweeps, any fabric", "sweeps",
+                            "force error over EA/l0 L [-]", false, true, {most_states, all_states},
+                            "40000 states of 10000 random fabrics, strains -20..10 %."});
 }
 
 TEST_CASE("V-CELL-21 input without an answer gets a status, never a hang or a silent NaN") {

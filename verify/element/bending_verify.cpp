@@ -3,6 +3,7 @@
 
 #include "element/patches.hpp"
 #include "support/claim.hpp"
+#include "support/plots.hpp"
 #include "support/taylor_test.hpp"
 
 #include <doctest/doctest.h>
@@ -173,6 +174,26 @@ TEST_CASE("V-BEND-02 cylinder patch: D/(2 R^2) per area, approached with order 2
   check(0.4, 0.2, triangles, 0, "triangles");
   // (h/R)^2 times a constant of order 1, with h = 1.25 mm: 1e-3.
   errors.claim("V-BEND-02", 2e-3, "energy per area at R/h = 32, relative");
+
+  verify::Plot plot{"V-BEND-02", "A rolled sheet", "h/R", "error of the energy, relative", true, true,
+                    {}, "The bending energy D cos^4/(2 R^2) of each family is approached with order 2, "
+                    "whatever the angle between yarns and mesh."};
+  const auto over_h = [&](const char* name, double angle, auto corners) {
+    const double c = std::cos(angle) * std::cos(angle), s = 1 - c;
+    const double expected = (warp * c * c + weft * s * s) / (2 * R * R);
+    verify::Curve curve{name, {}, {}};
+    for (int n = 8; n <= 64; n *= 2) {
+      curve.x.push_back(side / n / R);
+      curve.y.push_back(std::abs(density(n, angle, 0, corners) / expected - 1));
+    }
+    plot.curves.push_back(curve);
+  };
+  over_h("quads, 0 deg", 0, quads);
+  over_h("quads, 45 deg", pi / 4, quads);
+  over_h("quads, 0.4 rad", 0.4, quads);
+  over_h("triangles, 0.4 rad", 0.4, triangles);
+  plot.curves.push_back(verify::guide("order 2", 2, plot.curves[0], 0.5));
+  verify::show(plot);
   orders.claim("V-BEND-02", 0.1, "distance of the order from 2, regular meshes");
 }
 

@@ -6,6 +6,7 @@
 #include "element/manufactured_load.hpp"
 #include "element/patches.hpp"
 #include "support/claim.hpp"
+#include "support/plots.hpp"
 #include "support/taylor_test.hpp"
 
 #include <doctest/doctest.h>
@@ -375,6 +376,25 @@ TEST_CASE("V-ELEM-07 fibres at 45 degrees lock an element of 2x2 points and not 
   // Within the next term of the series, (curvature h)^2 = 1e-3 at these meshes.
   claim("V-ELEM-07", std::abs(rate(FourPointKind{}) - 2), 0.05, "rate of 2x2 points, off 2");
   claim("V-ELEM-07", std::abs(rate(OnePointKind{}) - 4), 0.05, "rate of one point, off 4");
+
+  const auto over_h = [&](const char* name, auto kind, double warp) {
+    verify::Curve energies{name, {}, {}};
+    for (int n = 4; n <= 64; n *= 2) {
+      energies.x.push_back(40.0 / n);
+      energies.y.push_back(stored(kind, law, n, warp).yarn / one.shear);
+    }
+    return energies;
+  };
+  verify::Plot plot{"V-ELEM-07", "Tension locking", "element size [mm]",
+                    "yarn energy over shear energy", true, true,
+                    {over_h("2x2 points, 45 deg", FourPointKind{}, pi / 4),
+                     over_h("one point, 45 deg", OnePointKind{}, pi / 4),
+                     over_h("2x2 points, aligned", FourPointKind{}, 0)},
+                    "A shear that strains no yarn: the yarn energy should be nothing. 2x2 points at "
+                    "45 deg store more of it than the whole shear; the one-point element does not."};
+  plot.curves.push_back(verify::guide("order 2", 2, plot.curves[0]));
+  plot.curves.push_back(verify::guide("order 4", 4, plot.curves[1]));
+  verify::show(plot);
 }
 
 namespace {

@@ -86,6 +86,31 @@ TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its mod
   // The angle comes from a cosine: 1e-16 / (sin delta gamma) with gamma >= 0.02 is 1e-14, which the
   // laws' powers of gamma may triple.
   polynomial.claim("V-LAW-10", 1e-13, "polynomial laws A and B against Gauss' rule");
+
+  const auto right = verify::fibre_angle<double>(90);
+  const auto drawn = [&](const char* name, const auto& shear) {
+    verify::Curve curve{name, {}, {}};
+    for (int k = -45; k <= 45; ++k) {
+      curve.x.push_back(0.02 * k);
+      curve.y.push_back(1e3 * traction(shear, 0.02 * k, 90));
+    }
+    return curve;
+  };
+  verify::Plot plot{"V-LAW-10", "Shear laws", "shear angle gamma [rad]", "shear traction [N/mm]",
+                    false, false,
+                    {drawn("law A", verify::polynomial_shear<double>(verify::law_A, right)),
+                     drawn("law B", verify::polynomial_shear<double>(verify::law_B, right)),
+                     drawn("tabulated", verify::tabulated_shear<double>(right))},
+                    "Odd in gamma, from small to locking angles; dots: modulus integrated by Gauss' "
+                    "rule."};
+  verify::Curve dots{"by Gauss' rule", {}, {}, verify::Curve::Style::points};
+  for (const auto& coefficients : {verify::law_A, verify::law_B})
+    for (int k = -4; k <= 4; ++k) {
+      dots.x.push_back(0.2 * k);
+      dots.y.push_back(integral([&](double g) { return horner(coefficients, std::abs(g)); }, 0.2 * k));
+    }
+  plot.curves.push_back(dots);
+  verify::show(plot);
   energy.claim("V-LAW-10", 1e-13, "their energy against Gauss' rule applied twice");
   table.claim("V-LAW-10", 1e-13, "tabulated law at and between its points");
   oddness.claim("V-LAW-10", 1e-13, "tau(-gamma) = -tau(gamma)");

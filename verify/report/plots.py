@@ -7,6 +7,7 @@ matplotlib >= 3.6.
 import io
 import math
 import re
+import textwrap
 
 import matplotlib
 
@@ -48,15 +49,13 @@ STYLE = {
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def power_of_ten(value, _position=None):
-    """1000 as 10³: plain text instead of matplotlib's mathematics."""
-    if value <= 0:
-        return ""
-    exponent = math.log10(value)
-    if abs(exponent - round(exponent)) > 1e-9:
+def label(value, _position=None):
+    """A number on a logarithmic axis, 2e-5 as 2·10⁻⁵: plain text, not matplotlib's mathematics."""
+    if 0.01 <= value <= 1000:
         return f"{value:g}"
-    return f"{value:g}" if -2 <= exponent <= 3 else "10" + str(round(exponent)).translate(
-        SUPERSCRIPT)
+    mantissa, exponent = f"{value:.0e}".split("e")
+    factor = "" if mantissa == "1" else mantissa + "·"
+    return factor + "10" + str(int(exponent)).translate(SUPERSCRIPT)
 
 
 def numbers(values):
@@ -74,10 +73,10 @@ def logarithmic(axis):
     low, high = sorted(axis.get_view_interval())
     decades = math.log10(high / low) if low > 0 and math.isfinite(high) else 1
     axis.set_major_locator(LogLocator(numticks=9))
-    axis.set_major_formatter(FuncFormatter(power_of_ten))
+    axis.set_major_formatter(FuncFormatter(label))
     if decades < 2:
         axis.set_minor_locator(LogLocator(subs=(2, 5)))
-        axis.set_minor_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
+        axis.set_minor_formatter(FuncFormatter(label))
     else:
         axis.set_minor_formatter(NullFormatter())
 
@@ -95,8 +94,9 @@ def inline_svg(figure, key):
     svg = re.sub(r'\bid="', f'id="{key}-', svg)
     svg = svg.replace("url(#", f"url(#{key}-")
     svg = re.sub(r'(<use[^>]*?xlink:href="#)', rf"\g<1>{key}-", svg)
-    # Hundredths of a point are enough.
-    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
+    svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
+    # Hundredths of a point are enough; words stay as they are.
+    svg = re.sub(r"<[^>]*>", lambda tag: re.sub(r"(\d\.\d\d)\d+", r"\1", tag[0]), svg)
     # The page sets the size, the view box keeps the proportions.
     return re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", re.sub(
         r'(<svg[^>]*?) height="[^"]*"', r"\1", svg, count=1), count=1)
@@ -107,7 +107,7 @@ def legend_above(figure, axes):
     handles, labels = axes.get_legend_handles_labels()
     if len(labels) < 2:
         return
-    widest = max(len(label) for label in labels)
+    widest = max(len(name) for name in labels)
     columns = max(1, min(len(labels), int(72 / (widest + 7))))
     legend = figure.legend(handles, labels, loc="upper left", ncol=columns,
                            borderaxespad=0.2, columnspacing=1.2)
@@ -124,15 +124,16 @@ def draw_bars(axes, curve):
 
 
 def draw_curves(axes, curves, log_x, log_y):
+    few = max(len(curve["x"]) for curve in curves) <= FEW
     coloured = 0
     for curve in curves:
         x, y = numbers(curve["x"]), numbers(curve["y"])
         x, y = positive(x) if log_x else x, positive(y) if log_y else y
-        label = curve["name"] or None
+        name = curve["name"] or None
         if curve["style"] == "guide":
-            axes.plot(x, y, color=GREY, linewidth=0.8, label=label, zorder=1)
+            axes.plot(x, y, color=GREY, linewidth=0.8, label=name, zorder=1)
             continue
-        style = {"color": COLOURS[coloured % len(COLOURS)], "label": label}
+        style = {"color": COLOURS[coloured % len(COLOURS)], "label": name}
         turn = coloured // len(COLOURS)
         marker = MARKERS[coloured % len(MARKERS)]
         coloured += 1
@@ -140,7 +141,7 @@ def draw_curves(axes, curves, log_x, log_y):
             axes.plot(x, y, linestyle="none", marker=marker, **style)
         else:
             axes.plot(x, y, linestyle=DASHES[turn % len(DASHES)],
-                      marker=marker if len(x) <= FEW else None, **style)
+                      marker=marker if few else None, **style)
 
 
 def plot_svg(plot, key):
@@ -154,14 +155,15 @@ def plot_svg(plot, key):
             axes.set_yscale("log")
         if plot["style"] == "bars":
             draw_bars(axes, plot["curves"][0])
-            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         else:
             draw_curves(axes, plot["curves"], log_x, log_y)
         for on, axis in ((log_x, axes.xaxis), (log_y, axes.yaxis)):
             if on:
                 logarithmic(axis)
-        axes.set_xlabel(plot["x"])
-        axes.set_ylabel(plot["y"])
+        if not log_x and all(v is None or v == round(v) for c in plot["curves"] for v in c["x"]):
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.set_xlabel(textwrap.fill(plot["x"], 60))
+        axes.set_ylabel(textwrap.fill(plot["y"], 36))
         axes.grid(True, color=LIGHT, linewidth=0.5)
         axes.set_axisbelow(True)
         legend_above(figure, axes)
@@ -228,7 +230,7 @@ def margins_svg(areas, key="margins"):
         worst = max(place for place, _ in small)
         axes.set_xlim(nothing / 2, max(2.5, 2 * worst))
         decades = [10.0**k for k in range(-6, 4) if k <= 0 or 10.0**k <= worst]
-        axes.set_xticks([nothing] + decades, ["0"] + [power_of_ten(d) for d in decades])
+        axes.set_xticks([nothing] + decades, ["0"] + [label(d) for d in decades])
         axes.xaxis.set_minor_locator(plt.NullLocator())
         axes.grid(True, axis="x", color=LIGHT, linewidth=0.5)
         axes.set_axisbelow(True)

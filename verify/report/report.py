@@ -4,8 +4,13 @@
             [--claims verify/README.md] [--junit tests.xml] [--tests tests.json]
             [--mutation mutation.json] [--build build.json] [--title TEXT] [--repeat COMMAND]
 
-The log is what crossbeam/verification/evidence.hpp writes. Claims come from the table, from the log
-or from both. A claim of the table holds when tests carry its ID, all of them passed and all its
+The log is what crossbeam/verification/evidence.hpp writes. It may hold claims of its own and say what
+is verified, any further fields of the subject being shown as they are:
+
+  {"kind": "claim", "id", "statement", "source", "tolerance_reason", "area"}
+  {"kind": "subject", "name", ...}
+
+Claims come from the table, from the log or from both. A claim of the table holds when tests carry its ID, all of them passed and all its
 comparisons are within their bounds; one of the log when it was compared at all and all
 comparisons are within their bounds.
 
