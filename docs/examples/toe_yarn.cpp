@@ -1,5 +1,5 @@
 // A yarn law of one's own - its fibres straighten before they carry - put through the battery. With
-// `toe_yarn <log>` the evidence goes to a file, from which crossbeam-report makes the page.
+// `toe_yarn <log>` the evidence goes to a file, from which `./run report` makes the page.
 
 // [begin:law]
 #include <crossbeam/verification/law_battery.hpp>
