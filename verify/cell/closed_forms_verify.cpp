@@ -141,8 +141,8 @@ TEST_CASE("V-CELL-08 pulled alone, a yarn locks when it is straight and carries 
   verify::show(verify::Plot{"V-CELL-08", "A warp yarn pulled alone: the free weft",
                             "warp strain [%]", "weft strain [%]", false, false,
                             {weft, weft_by_hand},
-                            "The weft gives its length to the warp (crimp interchange), 3.92 % when "
-                            "the warp is straight."});
+                            "The weft gives its length to the warp (crimp interchange), 3.92 % "
+                            "when the warp is straight."});
   // The root is found to one rounding of u2 = 0.1 mm where F2 leaves zero; F2 leaves it linearly.
   weft_strain.claim("V-CELL-08", 1e-12, "contraction of the free weft against the frozen lengths");
   force.claim("V-CELL-08", 1e-10, "F_warp: zero up to 1.27191 %, EA/l0 beyond [kN]");
@@ -178,8 +178,8 @@ TEST_CASE("V-CELL-09 without bending slackness ends on the curve of crimp interc
   REQUIRE(tried > 1000);
   verify::Map map{"V-CELL-09", "Slack map of the cell without bending", "warp strain [%]",
                   "weft strain [%]", "contact force q [kN]", {}, {}, {},
-                  "Grey is slack: the yarns do not press on each other. The region ends on the curve "
-                  "of crimp interchange, and the force rises from zero on it."};
+                  "Grey is slack: the yarns do not press on each other. The region ends on the "
+                  "curve of crimp interchange, and the force rises from zero on it."};
   const Cell cell(verify::table_1_without_bending());
   for (int i = -50; i <= 50; ++i) {
     map.at_x.push_back(0.1 * i);

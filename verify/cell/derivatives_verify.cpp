@@ -110,9 +110,9 @@ TEST_CASE("V-CELL-03 forces are the energy's gradient and the tangent its second
   verify::Worst first, second, third, spoiled;
   verify::Plot plot{"V-CELL-03", "Taylor remainders of the stored energy", "step, as a share of h",
                     "remainder [kN mm]", true, true, {},
-                    "A taut state of Table 1: each remainder falls with the power of the first term "
-                    "left out, down to round-off; with a force wrong by 1e-3 the slope turns from 2 "
-                    "to 1."};
+                    "A taut state of Table 1: each remainder falls with the power of the first "
+                    "term left out, down to round-off; with a force wrong by 1e-3 the slope turns "
+                    "from 2 to 1."};
   for (const auto& s : verify::states_on_both_sides(random, 80, margin)) {
     const LongCell cell(verify::converted<long double>(s.parameters));
     const LongAnswer at = verify::answer(cell, s.u1, s.u2);

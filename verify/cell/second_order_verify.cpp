@@ -74,9 +74,11 @@ TEST_CASE("V-CELL-28 to first order the second-order cell and the energy cell ag
   }
   printed.claim("V-CELL-28", 0.51, "the table of P against E-U, in units of its last digit");
 
-  verify::Plot plot{"V-CELL-28", "P against E-U", "warp strain [%]", "warp force [kN]", false, false,
-                    {}, "E-U is the energy cell, P the paper's second-order cell: the same under balanced "
-                    "strain, P softer where the weft is held and far too soft where it contracts."};
+  verify::Plot plot{"V-CELL-28", "P against E-U", "warp strain [%]", "warp force [kN]", false,
+                    false, {},
+                    "E-U is the energy cell, P the paper's second-order cell: the same under "
+                    "balanced strain, P softer where the weft is held and far too soft where it "
+                    "contracts."};
   struct Path {
     const char* name;
     double weft;

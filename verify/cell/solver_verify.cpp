@@ -113,19 +113,19 @@ TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine
   }
   verify::show(verify::Plot{"V-CELL-11", "Sweeps to convergence", "sweeps", "states", false, true,
                             {bars},
-                            "200000 states of random fabrics, strains -20..10 %: nearly all are done "
-                            "after a handful of sweeps, and the tail dies out.", true});
+                            "200000 states of random fabrics, strains -20..10 %: nearly all are "
+                            "done after a handful of sweeps, and the tail dies out.", true});
   verify::Map map{"V-CELL-11", "Sweeps of Table 1", "warp strain [%]", "weft strain [%]", "sweeps",
                   {}, {}, {},
-                  "Three or four nearly everywhere, six where one yarn is slack and the other about to "
-                  "be straight; one at rest."};
+                  "Three or four nearly everywhere, six where one yarn is slack and the other "
+                  "about to be straight; one at rest."};
   const Cell cell_of_table(verify::table_1());
   for (int i = -40; i <= 40; ++i) {
     map.at_x.push_back(0.125 * i);
     map.at_y.push_back(0.125 * i);
     map.values.emplace_back();
     for (int j = -40; j <= 40; ++j)
-      map.values.back().push_back(answer(cell_of_table, 2.5 * 0.00125 * j, 2.5 * 0.00125 * i).sweeps);
+      map.values.back().push_back(answer(cell_of_table, 0.003125 * j, 0.003125 * i).sweeps);
   }
   verify::show(map);
   REQUIRE(states == 200000);
@@ -212,11 +212,11 @@ TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the pri
   const std::array<double, 5> wide_table{0, 1.7e-3, 9.5e-6, 2.5e-9, 4e-15};
   const std::vector<double> counts{1, 2, 3, 4};
   verify::show(verify::Plot{
-      "V-CELL-12", "Error of a fixed number of sweeps, Table 1", "sweeps", "largest force error [kN]",
-      false, true,
+      "V-CELL-12", "Error of a fixed number of sweeps, Table 1", "sweeps",
+      "largest force error [kN]", false, true,
       {{"strains -2..3 %", counts, {drape.begin() + 1, drape.end()}},
        {"strains -20..10 %", counts, {wide.begin() + 1, wide.end()}}},
-      "The number of right digits doubles with each sweep until round-off; forces are up to 3 kN."});
+      "The right digits double with each sweep until round-off; forces are up to 3 kN."});
   for (int n = 1; n <= 4; ++n) {
     const std::string sweeps = std::to_string(n) + " sweeps [kN]";
     verify::claim("V-CELL-12", drape[n], drape_table[n], "Table 1, strains -2..3 %, " + sweeps);

@@ -175,8 +175,9 @@ TEST_CASE("V-BEND-02 cylinder patch: D/(2 R^2) per area, approached with order 2
   // (h/R)^2 times a constant of order 1, with h = 1.25 mm: 1e-3.
   errors.claim("V-BEND-02", 2e-3, "energy per area at R/h = 32, relative");
 
-  verify::Plot plot{"V-BEND-02", "A rolled sheet", "h/R", "error of the energy, relative", true, true,
-                    {}, "The bending energy D cos^4/(2 R^2) of each family is approached with order 2, "
+  verify::Plot plot{"V-BEND-02", "A rolled sheet", "h/R", "error of the energy, relative", true,
+                    true, {},
+                    "The bending energy D cos^4/(2 R^2) of each family is approached with order 2, "
                     "whatever the angle between yarns and mesh."};
   const auto over_h = [&](const char* name, double angle, auto corners) {
     const double c = std::cos(angle) * std::cos(angle), s = 1 - c;

@@ -105,8 +105,8 @@ TEST_CASE("V-LAW-03 S is the energy's gradient and dS/dE its Hessian, by rate") 
             verify::taylor_test(3, [&](double e) { return remainder(e, true, 1); }, 1, noise);
         third.see(slope_3.deviation, name, degrees, "deg, sample", sample, slope_3.table);
         if (std::abs(s(2) * h(2)) > 1e-8) {
-          const auto wrong =
-              verify::taylor_test(2, [&](double e) { return remainder(e, false, 1.01L); }, 1, noise);
+          const auto spoilt = [&](double e) { return remainder(e, false, 1.01L); };
+          const auto wrong = verify::taylor_test(2, spoilt, 1, noise);
           spoiled.see(wrong.deviation);
           if (plot.curves.empty() && name == "polynomial B") {
             plot.title = "Taylor remainders of the membrane energy: " + name + ", " +

@@ -101,13 +101,14 @@ TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its mod
                     {drawn("law A", verify::polynomial_shear<double>(verify::law_A, right)),
                      drawn("law B", verify::polynomial_shear<double>(verify::law_B, right)),
                      drawn("tabulated", verify::tabulated_shear<double>(right))},
-                    "Odd in gamma, from small to locking angles; dots: modulus integrated by Gauss' "
-                    "rule."};
+                    "Odd in gamma, from small to locking angles; dots: modulus integrated by "
+                    "Gauss' rule."};
   verify::Curve dots{"by Gauss' rule", {}, {}, verify::Curve::Style::points};
   for (const auto& coefficients : {verify::law_A, verify::law_B})
     for (int k = -4; k <= 4; ++k) {
       dots.x.push_back(0.2 * k);
-      dots.y.push_back(integral([&](double g) { return horner(coefficients, std::abs(g)); }, 0.2 * k));
+      const auto modulus = [&](double g) { return horner(coefficients, std::abs(g)); };
+      dots.y.push_back(integral(modulus, 0.2 * k));
     }
   plot.curves.push_back(dots);
   verify::show(plot);

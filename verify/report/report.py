@@ -4,15 +4,15 @@
             [--claims verify/README.md] [--junit tests.xml] [--tests tests.json]
             [--mutation mutation.json] [--build build.json] [--title TEXT] [--repeat COMMAND]
 
-The log is what crossbeam/verification/evidence.hpp writes. It may hold claims of its own and say what
-is verified, any further fields of the subject being shown as they are:
+The log is what crossbeam/verification/evidence.hpp writes. It may hold claims of its own and say
+what is verified, any further fields of the subject being shown as they are:
 
   {"kind": "claim", "id", "statement", "source", "tolerance_reason", "area"}
   {"kind": "subject", "name", ...}
 
-Claims come from the table, from the log or from both. A claim of the table holds when tests carry its ID, all of them passed and all its
-comparisons are within their bounds; one of the log when it was compared at all and all
-comparisons are within their bounds.
+Claims come from the table, from the log or from both. A claim of the table holds when tests carry
+its ID, all of them passed and all its comparisons are within their bounds; one of the log when it
+was compared at all and all comparisons are within their bounds.
 
 Exit status: 0 all claims hold, 1 some do not, 2 there is no report.
 Needs Jinja2 and matplotlib (Debian: python3-jinja2 python3-matplotlib).
@@ -192,7 +192,7 @@ def read_log(file):
 
 
 def read_table(file):
-    """Claims from rows `| V-XXX-NN | statement | test file | source | tolerance |` under headings."""
+    """Claims from rows `| ID | statement | test file | source | tolerance |` under headings."""
     claims, area = {}, ""
     for number, line in enumerate(read_text(file).splitlines(), 1):
         if line.startswith("## "):
@@ -486,7 +486,8 @@ def page(facts, repeat):
         {key: value for key, value in facts.items() if key not in ("json", "claims")},
         areas=[(name, claims, summary_of(claims)) for name, claims in areas],
         broken=[c for c in facts["claims"] if c.verdict == "does not hold"],
-        margins=Markup(plots.margins_svg(margins)) if margins else "", pictures_of=pictures_of, repeat=repeat)
+        margins=Markup(plots.margins_svg(margins)) if margins else "",
+        pictures_of=pictures_of, repeat=repeat)
 
 
 def write(file, text):

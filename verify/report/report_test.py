@@ -184,9 +184,9 @@ class ReportTest(unittest.TestCase):
 
     def test_share_of_the_tolerance(self):
         for measured, tolerance, bound, share in (
-                (1, 4, "upper", 0.25), (4, 1, "lower", 0.25), (0, 0, "upper", 0), (-1, 0, "upper", 0),
-                (5e-321, 1e-12, "upper", 0), (1, 0, "lower", 0), (-4, -1, "upper", 0.25),
-                (2, 1, "upper", 2), (1, 0, "upper", float("inf")),
+                (1, 4, "upper", 0.25), (4, 1, "lower", 0.25), (0, 0, "upper", 0),
+                (-1, 0, "upper", 0), (5e-321, 1e-12, "upper", 0), (1, 0, "lower", 0),
+                (-4, -1, "upper", 0.25), (2, 1, "upper", 2), (1, 0, "upper", float("inf")),
                 (-1, 1, "lower", float("inf"))):
             found = report.used(measurement("V-ONE-01", measured, tolerance, bound=bound))
             self.assertAlmostEqual(found, share, msg=(measured, tolerance, bound))
@@ -250,8 +250,8 @@ class ReportTest(unittest.TestCase):
             return {"kind": "claim", "id": name, "statement": statement, "source": "Taylor slopes",
                     "tolerance_reason": "next term", "area": "Yarn law"}
         subject = {"kind": "subject", "name": "Toe curve", "stiffness [kN]": 35.4}
-        log = [measurement("YARN-2", 1, 2), plot("YARN-1"), claim("YARN-1"), claim("YARN-2"), subject,
-               measurement("YARN-1", 1.9, 2), claim("YARN-1")]
+        log = [measurement("YARN-2", 1, 2), plot("YARN-1"), claim("YARN-1"), claim("YARN-2"),
+               subject, measurement("YARN-1", 1.9, 2), claim("YARN-1")]
         self.assertEqual(self.run_report(log), 0)
         self.assertEqual(list(self.claim), ["YARN-1", "YARN-2"])
         self.assertEqual(self.json["title"], "Verification of Toe curve")
