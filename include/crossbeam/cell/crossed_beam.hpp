@@ -23,7 +23,8 @@ enum class CellStatus {
   converged,
   not_converged,       ///< the iteration did not reach its tolerance
   unstable,            ///< no stable equilibrium on the branch followed (bilateral, second order)
-  outside_kinematics,  ///< a yarn is shortened to nothing, or the input is not a number
+  outside_kinematics,  ///< a yarn is shortened to nothing or drawn out beyond all numbers, or the
+                       ///< input is not a number
 };
 
 /// What a cell answers to the elongations (u1, u2) of its yarns.
@@ -152,6 +153,7 @@ class CrossedBeamCell {
     yarn2_ = Yarn(parameters.weft, parameters.contact_length - H1,
                   parameters.bending_boundary_factor, std::move(weft));
     k3_ = parameters.contact_modulus * parameters.contact_area / parameters.contact_length;
+    largest_elongation_ = CellRange<R>(parameters).largest_elongation();
     has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
   }
 
@@ -159,6 +161,8 @@ class CrossedBeamCell {
   [[nodiscard]] const Yarn& warp() const { return yarn1_; }
   [[nodiscard]] const Yarn& weft() const { return yarn2_; }
   [[nodiscard]] R contact_stiffness() const { return k3_; }
+  /// Elongations from -L up to this one have an answer, tag [C-12].
+  [[nodiscard]] R largest_elongation() const { return largest_elongation_; }
 
   /// Cell in equilibrium; its energy and tangent are computed only when asked for.
   template <class T>
@@ -360,7 +364,10 @@ class CrossedBeamCell {
   /// Status of a solution that was iterated to convergence.
   template <class T>
   void check(const T& u1, const T& u2, Solution<T>& solution) const {
-    if (!(all(u1 > T(-yarn1_.L)) && all(u2 > T(-yarn2_.L)))) {
+    const auto within = [this](const T& u, R L) {
+      return all(u > T(-L)) && all(u < T(largest_elongation_));
+    };
+    if (!(within(u1, yarn1_.L) && within(u2, yarn2_.L))) {
       solution.status = CellStatus::outside_kinematics;
     } else if (ContactKind == Contact::bilateral && solution.status == CellStatus::converged) {
       const T D1 = YarnState<T>(yarn1_, u1, solution.forces.w1).k_hh(yarn1_);
@@ -374,6 +381,7 @@ class CrossedBeamCell {
   CellParameters<R> parameters_{};
   Yarn yarn1_{}, yarn2_{};
   R k3_{};
+  R largest_elongation_{};
   bool has_bending_ = false;
 };
 

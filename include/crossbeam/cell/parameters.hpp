@@ -6,6 +6,8 @@
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/scalar.hpp"
 
+#include <cmath>
+#include <limits>
 #include <string>
 
 namespace crossbeam {
@@ -54,6 +56,55 @@ struct CellParameters {
   }
 };
 
+/// The numbers of a cell as the solver forms them.
+template <class R>
+struct CellRange {
+  R least_stiffness;  ///< of the yarns along their chords and of the contact
+  R total_stiffness;  ///< these and bending added: not a number if one of them is none
+  R least_length, largest_length;
+
+  explicit CellRange(const CellParameters<R>& p) {
+    using std::sqrt;
+    const R H1 = p.warp_height_fraction * p.contact_length;
+    const auto chord = [](R L, R H) { return sqrt(L * L + H * H); };
+    const R l1 = chord(p.warp.length, H1), l2 = chord(p.weft.length, p.contact_length - H1);
+    const auto axial = [](const YarnParameters<R>& y, R l) {
+      return y.youngs_modulus * y.cross_section / l;
+    };
+    const auto bending = [&p](const YarnParameters<R>& y, R l) {
+      return p.bending_boundary_factor * y.youngs_modulus * y.second_moment_of_area / (l * l * l);
+    };
+    const R k1 = axial(p.warp, l1), k2 = axial(p.weft, l2);
+    const R k3 = p.contact_modulus * p.contact_area / p.contact_length;
+    least_stiffness = minimum(k3, minimum(k1, k2));
+    total_stiffness = k1 + k2 + k3 + bending(p.warp, l1) + bending(p.weft, l2) +
+                      p.residual_compression_stiffness;
+    least_length = minimum(p.warp.length, p.weft.length);
+    largest_length = maximum(l1, l2);
+  }
+
+  /// Whether products of three stiffnesses, with and without a length, and of a stiffness and three
+  /// lengths keep their digits, and a stiffness over a squared length: solver, energy and tangent
+  /// form them, tag [C-12].
+  [[nodiscard]] bool workable() const {
+    const R eps = std::numeric_limits<R>::epsilon();
+    const R low = std::numeric_limits<R>::min() / (eps * eps * eps);
+    const R high = std::numeric_limits<R>::max() * eps;
+    const R k = least_stiffness, K = total_stiffness, l = least_length, L = largest_length;
+    return l * l >= low && minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low &&
+           k >= low * L * L && L * L <= high && maximum(R(1), L) * K * K * K <= high &&
+           K * L * L * L <= high;
+  }
+
+  /// Elongations below it keep forces and energies finite, tag [C-12].
+  [[nodiscard]] R largest_elongation() const {
+    using std::sqrt;
+    const R high = std::numeric_limits<R>::max() * std::numeric_limits<R>::epsilon();
+    const R K = total_stiffness;
+    return minimum(minimum(sqrt(high), sqrt(high / K)), high / (K * K * K));
+  }
+};
+
 /// Throws InputError naming the field, its value, unit and admissible range.
 /// @param prefix the caller's name of the parameter set, for instance "cell".
 template <class R>
@@ -75,6 +126,16 @@ void validate(const CellParameters<R>& p, const std::string& prefix = "cell") {
                        p.residual_compression_stiffness, "kN/mm");
   if (p.symmetry != 1 && p.symmetry != 2)
     throw InputError(prefix + ".symmetry", std::to_string(p.symmetry), "", "1 or 2");
+  const CellRange<R> range(p);
+  if (!range.workable())
+    throw InputError(prefix,
+                     detail::to_text(range.least_stiffness) + " to " +
+                         detail::to_text(range.total_stiffness) +
+                         " kN/mm (E A / l0 of the yarns, E3 A3 / L3) on lengths of " + detail::to_text(range.least_length) +
+                         " to " + detail::to_text(range.largest_length),
+                     "mm",
+                     "stiffness^3, times a length or not, and stiffness length^3 must be numbers "
+                     "with all their digits: choose other units");
 }
 
 }  // namespace crossbeam

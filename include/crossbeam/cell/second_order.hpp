@@ -64,7 +64,9 @@ class SecondOrderCell {
       solution.iterations = k;
       if (all(converged)) break;
     }
-    const auto good = converged && stable && (u1 > T(-y1.L)) && (u2 > T(-y2.L));
+    const T most(fallback_.largest_elongation());
+    const auto within = (u1 > T(-y1.L)) && (u2 > T(-y2.L)) && (u1 < most) && (u2 < most);
+    const auto good = converged && stable && within;
     if (!all(good)) {
       const auto energy = fallback_.solve(u1, u2, control);
       const auto choose = [&](const T& a, const T& b) { return select(good, a, b); };
@@ -72,8 +74,7 @@ class SecondOrderCell {
              choose(out.w1, energy.forces.w1), choose(out.w2, energy.forces.w2),
              choose(out.q, energy.forces.q)};
       solution.fallback = select(good, T(0), T(1));
-      solution.status = !(all(u1 > T(-y1.L)) && all(u2 > T(-y2.L)))
-                            ? CellStatus::outside_kinematics
+      solution.status = !all(within)  ? CellStatus::outside_kinematics
                         : all(stable) ? CellStatus::not_converged
                                       : CellStatus::unstable;
     }

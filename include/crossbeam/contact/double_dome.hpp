@@ -129,7 +129,12 @@ class DoubleDome {
                parameters.wall_angle, parameters.depth, offset),
         dome_(R(0), parameters.dome_radius, parameters.dome_fillet, dome_angle(parameters),
               parameters.depth, offset),
-        max_slope_(slope_bound()) {}
+        max_slope_(slope_bound()) {
+    // What single fields cannot show: arcs too flat to have an angle, lengths too large to square.
+    for (const auto* profile : {&ridge_, &dome_})
+      detail::require_square("dome: distance of the foot", profile->foot(), "mm");
+    require_finite("dome: largest slope", max_slope_, "-");
+  }
 
   /// Height and gradient; NaN in, NaN out.
   [[nodiscard]] HeightSample<R> height(R x, R y) const {

@@ -6,6 +6,8 @@
 #include "crossbeam/contact/surface.hpp"
 
 #include <cstddef>
+#include <limits>
+#include <string>
 #include <vector>
 
 namespace crossbeam {
@@ -32,7 +34,7 @@ class HeightTable {
   HeightTable(const Source& source, const HeightTableGrid<R>& grid)
       : x_(axis("x", grid.x0, grid.x1, grid.spacing, grid.mirror_x)),
         y_(axis("y", grid.y0, grid.y1, grid.spacing, grid.mirror_y)),
-        stride_(static_cast<std::size_t>(x_.cells) + 2),
+        stride_(checked_stride(x_, y_, grid.spacing)),
         coefficients_(stride_ * (static_cast<std::size_t>(y_.cells) + 2)) {
     for (int j = 0; j < y_.cells; ++j)
       for (int i = 0; i < x_.cells; ++i)
@@ -41,7 +43,7 @@ class HeightTable {
     std::vector<R> work(static_cast<std::size_t>(maximum(x_.cells, y_.cells)));
     for (int j = 1; j <= y_.cells; ++j) solve(&at(0, j), 1, x_.cells, work);
     for (int i = 0; i < x_.cells + 2; ++i) solve(&at(i, 0), stride_, y_.cells, work);
-    max_slope_ = slope_bound();
+    max_slope_ = require_finite("table.source(x, y): slope", slope_bound(), "-");
   }
 
   /// Height and gradient. T is R, a Pack of R or a number with derivatives over R.
@@ -99,7 +101,17 @@ class HeightTable {
     using std::ceil;
     const int cells = static_cast<int>(ceil(wanted * (R(1) - R(8) * epsilon_of<R>())));
     const R exact = (high - low) / R(cells);
-    return {low, exact, R(1) / exact, cells, mirror};
+    return {low, exact, require_finite("1 / table.spacing along " + name, R(1) / exact, "1/mm"),
+            cells, mirror};
+  }
+
+  static std::size_t checked_stride(const Axis& x, const Axis& y, R spacing) {
+    // Beyond, the table would fill the memory: the tool of the drape has a few 100 000 cells.
+    constexpr double most = 1e8;
+    if (!(static_cast<double>(x.cells) * y.cells <= most))
+      throw InputError("table.spacing", detail::to_text(spacing), "mm",
+                       "so large that the table has at most 1e8 cells");
+    return static_cast<std::size_t>(x.cells) + 2;
   }
 
   template <class Source>
@@ -140,12 +152,20 @@ class HeightTable {
         R along_x = R(0), along_y = R(0);
         for (int m = 0; m < 3; ++m)
           for (int k = 0; k < 2; ++k) {
-            along_x = maximum(along_x, magnitude(at(i + k + 1, j + m) - at(i + k, j + m)));
-            along_y = maximum(along_y, magnitude(at(i + m, j + k + 1) - at(i + m, j + k)));
+            along_x = larger(along_x, at(i + k + 1, j + m) - at(i + k, j + m));
+            along_y = larger(along_y, at(i + m, j + k + 1) - at(i + m, j + k));
           }
-        bound = maximum(bound, square(along_x * x_.per_spacing) + square(along_y * y_.per_spacing));
+        const R here = square(along_x * x_.per_spacing) + square(along_y * y_.per_spacing);
+        if (!(here <= bound)) bound = here;  // heights that overflowed end as infinite or no slope
+        if (!(bound <= std::numeric_limits<R>::max())) return bound;
       }
     return sqrt(bound);
+  }
+
+  /// The larger magnitude; a NaN wins.
+  static R larger(R so_far, R step) {
+    const R size = magnitude(step);
+    return so_far >= size ? so_far : size;
   }
 
   template <class T>

@@ -15,14 +15,15 @@ CROSSBEAM_INLINE Vec3<T> spread(const Vec3<R>& v) {
   return {T(v.x), T(v.y), T(v.z)};
 }
 
-/// Distance of a round tool: |radial| - radius, along the radial direction [T-5]. On the centre,
-/// where every direction is as good, the normal is the given one.
+/// Distance of a round tool: |radial| - radius, along the radial direction [T-5]. On the centre (or
+/// so near that the squared distance loses its digits), where every direction is as good, the normal
+/// is the given one.
 template <class T, class R>
 CROSSBEAM_INLINE SurfaceGap<T> round_gap(const Vec3<T>& radial, const R& radius,
                                          const Vec3<R>& at_centre) {
   using std::sqrt;
   const T squared = dot(radial, radial);
-  const auto off_centre = squared > T(R(0));
+  const auto off_centre = !(squared <= T(least_square<R>()));  // a NaN stays one
   const T length = sqrt(select(off_centre, squared, T(R(1))));
   const T inverse = T(R(1)) / length;
   const Vec3<T> normal{select(off_centre, radial.x * inverse, T(at_centre.x)),
@@ -43,8 +44,8 @@ class Plane {
   /// @param offset distance of the parallel plane, towards the fabric [length]
   Plane(const Vec3<R>& point, const Vec3<R>& normal, R offset = R(0))
       : normal_(detail::require_direction("plane.normal", normal)),
-        point_(detail::require_finite_point("plane.point", point, "length") +
-               require_finite("plane.offset", offset, "length") * normal_) {}
+        point_(detail::require_place("plane.point", point, "length") +
+               detail::require_square("plane.offset", offset, "length") * normal_) {}
 
   template <class T>
   CROSSBEAM_INLINE SurfaceGap<T> gap(const Vec3<T>& p) const {
@@ -68,11 +69,13 @@ class Sphere {
   /// @param radius > 0 [length]
   /// @param offset distance of the parallel sphere, outwards, > -radius [length]
   Sphere(const Vec3<R>& centre, R radius, R offset = R(0))
-      : centre_(detail::require_finite_point("sphere.centre", centre, "length")),
-        radius_(require_positive("sphere.radius + offset",
-                                 require_positive("sphere.radius", radius, "length") +
-                                     require_finite("sphere.offset", offset, "length"),
-                                 "length")) {}
+      : centre_(detail::require_place("sphere.centre", centre, "length")),
+        radius_(require_positive(
+            "sphere.radius + offset",
+            detail::require_square("sphere.radius", require_positive("sphere.radius", radius, "length"),
+                                   "length") +
+                detail::require_square("sphere.offset", offset, "length"),
+            "length")) {}
 
   template <class T>
   CROSSBEAM_INLINE SurfaceGap<T> gap(const Vec3<T>& p) const {
@@ -95,12 +98,14 @@ class Cylinder {
   /// @param radius > 0 [length]
   /// @param offset distance of the parallel cylinder, outwards, > -radius [length]
   Cylinder(const Vec3<R>& point, const Vec3<R>& axis, R radius, R offset = R(0))
-      : point_(detail::require_finite_point("cylinder.point", point, "length")),
+      : point_(detail::require_place("cylinder.point", point, "length")),
         axis_(detail::require_direction("cylinder.axis", axis)),
-        radius_(require_positive("cylinder.radius + offset",
-                                 require_positive("cylinder.radius", radius, "length") +
-                                     require_finite("cylinder.offset", offset, "length"),
-                                 "length")),
+        radius_(require_positive(
+            "cylinder.radius + offset",
+            detail::require_square("cylinder.radius", require_positive("cylinder.radius", radius, "length"),
+                                   "length") +
+                detail::require_square("cylinder.offset", offset, "length"),
+            "length")),
         across_(across(axis_)) {}
 
   template <class T>

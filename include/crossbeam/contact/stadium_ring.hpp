@@ -35,17 +35,19 @@ class StadiumRing {
         offset_(offset) {
     require_non_negative("ring.centre_distance", p.centre_distance, "mm");
     require_positive("ring.opening_radius - offset", p.opening_radius - offset, "mm");
+    detail::require_square("ring.opening_radius + edge_radius", reach_, "mm");
+    detail::require_square("ring.centre_distance", p.centre_distance, "mm");
   }
 
   template <class T>
   CROSSBEAM_INLINE SurfaceGap<T> gap(const Vec3<T>& p) const {
     using std::sqrt;
-    const T zero = T(R(0)), one = T(R(1));
+    const T zero = T(R(0)), one = T(R(1)), least = T(detail::least_square<R>());
     // In plan: vector and distance from the opening's middle line.
     const T beyond = maximum(magnitude(p.y) - T(parameters_.centre_distance), zero);
     const T along_y = select(p.y < zero, -beyond, beyond);
     const T plan_squared = p.x * p.x + along_y * along_y;
-    const auto off_line = plan_squared > zero;
+    const auto off_line = !(plan_squared <= least);  // a NaN stays one
     const T from_line = sqrt(select(off_line, plan_squared, one));
     const T rho = select(off_line, from_line, zero);
     const Vec3<T> outward{select(off_line, p.x / from_line, one),
@@ -55,7 +57,7 @@ class StadiumRing {
     const T upward = p.z + T(parameters_.edge_radius);
     const T inward_part = maximum(inward, zero), upward_part = maximum(upward, zero);
     const T corner_squared = inward_part * inward_part + upward_part * upward_part;
-    const auto outside_core = corner_squared > zero;
+    const auto outside_core = !(corner_squared <= least);
     const T corner = sqrt(select(outside_core, corner_squared, one));
     const auto wall_nearer = inward > upward;
     const T gap = select(outside_core, corner, select(wall_nearer, inward, upward)) - T(rounding_);

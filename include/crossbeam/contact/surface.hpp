@@ -9,6 +9,7 @@
 #include "crossbeam/base/scalar.hpp"
 
 #include <concepts>
+#include <limits>
 #include <string>
 
 namespace crossbeam {
@@ -50,11 +51,36 @@ enum class Side {
 
 namespace detail {
 
+/// Squared lengths below it do not have all their digits.
+template <class R>
+constexpr R least_square() {
+  return std::numeric_limits<R>::min() / std::numeric_limits<R>::epsilon();
+}
+
+/// A length whose square is still a number.
+template <class R>
+R require_square(const std::string& field, R value, const std::string& unit) {
+  const R most = std::numeric_limits<R>::max() * std::numeric_limits<R>::epsilon();
+  if (!(value * value <= most))
+    throw InputError(field, to_text(value), unit, "a number whose square is one too");
+  return value;
+}
+
 template <class R>
 Vec3<R> require_finite_point(const std::string& field, const Vec3<R>& p, const std::string& unit) {
   require_finite(field + ".x", p.x, unit);
   require_finite(field + ".y", p.y, unit);
   require_finite(field + ".z", p.z, unit);
+  return p;
+}
+
+/// A finite point whose coordinates can be squared.
+template <class R>
+Vec3<R> require_place(const std::string& field, const Vec3<R>& p, const std::string& unit) {
+  require_finite_point(field, p, unit);
+  require_square(field + ".x", p.x, unit);
+  require_square(field + ".y", p.y, unit);
+  require_square(field + ".z", p.z, unit);
   return p;
 }
 

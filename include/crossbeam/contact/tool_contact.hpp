@@ -51,11 +51,24 @@ struct ToolMotion {
   }
   static ToolMotion free_under(std::function<double(double)> F, double mass, double damping_rate,
                                double start = 0) {
-    require_positive("tool.mass", mass, "kg");
-    require_non_negative("tool.damping_rate", damping_rate, "1/ms");
-    return {{}, std::move(F), mass, damping_rate, require_finite("tool.start", start, "mm")};
+    ToolMotion motion{{}, std::move(F), mass, damping_rate, start};
+    validate(motion);
+    return motion;
   }
   [[nodiscard]] bool is_free() const { return !position; }
+
+  /// @throws InputError for a free tool without force or mass, and for a start that is no number
+  friend void validate(const ToolMotion& motion) {
+    if (!motion.is_free()) {
+      require_finite("tool.position(0)", motion.position(0), "mm");
+      return;
+    }
+    if (!motion.force)
+      throw InputError("tool.motion", "empty", "", "a position z(t), or a force F(t) and a mass");
+    require_positive("tool.mass", motion.mass, "kg");
+    require_non_negative("tool.damping_rate", motion.damping_rate, "1/ms");
+    require_finite("tool.start", motion.start, "mm");
+  }
 };
 
 /// Work done up to now [kN mm]; each entry counts in one place of the energy ledger only.
@@ -71,7 +84,9 @@ class ToolContact {
  public:
   virtual ~ToolContact() = default;
 
+  /// @throws InputError (validate)
   explicit ToolContact(ToolMotion motion) : motion_(std::move(motion)) {
+    validate(motion_);
     z_ = motion_.is_free() ? motion_.start : motion_.position(0);
   }
 

@@ -66,8 +66,13 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       else
         long_.emplace_back(key.mirrors, stencils);
     }
-    for (int n = 0; n < mesh.node_count; ++n)  // Gershgorin
-      omega_squared_ = std::max(omega_squared_, row_sum[n] / (area[n] * areal_mass));
+    for (int n = 0; n < mesh.node_count; ++n) {
+      const double omega_squared = row_sum[n] / (area[n] * areal_mass);  // Gershgorin
+      if (!std::isfinite(omega_squared))
+        throw InputError("squared bending frequency of mesh.nodes[" + std::to_string(n) + "]",
+                         detail::to_text(omega_squared), "1/ms^2", "a finite number");
+      omega_squared_ = std::max(omega_squared_, omega_squared);
+    }
   }
 
   void add_forces(NodalState<R>& state, double) override {

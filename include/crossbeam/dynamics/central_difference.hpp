@@ -55,13 +55,15 @@ class CentralDifference {
   /// step dt. Call once, after all blocks and tools were added.
   void start(double dt) {
     dt_ = require_positive("time_step", dt, "ms");
+    require_positive("time_step in the run's precision", static_cast<R>(dt), "ms");
     time_ = 0;
     state_.v_centre = state_.v;
   }
 
   /// One step: forces at t_n, velocities to t_{n+1/2}, positions to t_{n+1}.
   /// @param sample ledger to fill with the energies at t_n, or nullptr
-  /// @throws RunError when a node moves faster than `speed_limit` or not at all a number
+  /// @throws RunError naming node, tool or ledger when a node moves faster than `speed_limit`, or
+  /// anything is not a number
   void step(EnergyLedger* sample = nullptr) {
     CROSSBEAM_EXPECTS(dt_ > 0);
     compute_forces();
@@ -73,7 +75,14 @@ class CentralDifference {
     }
     const double fastest = move();
     double tool_travel = 0;
-    for (const auto& t : tools_) tool_travel = std::max(tool_travel, t->advance(time_, dt_));
+    for (std::size_t k = 0; k < tools_.size(); ++k) {
+      const double moved = tools_[k]->advance(time_, dt_);
+      if (!std::isfinite(moved))
+        throw RunError(when() + "tool " + std::to_string(k) + " is at z = " +
+                       detail::to_text(tools_[k]->position()) +
+                       " mm: its motion z(t) or force F(t) gives no number");
+      tool_travel = std::max(tool_travel, moved);
+    }
     travel_ += fastest * dt_ + tool_travel;
     if (sample || steps_ == 0) {
       // First half of the step's work, the energies at t_n, then the second half. The first half of
@@ -97,11 +106,14 @@ class CentralDifference {
     ++steps_;
     time_ = static_cast<double>(steps_) * dt_;
     if (!(fastest <= speed_limit_))
-      throw RunError("time " + detail::to_text(time_) + " ms, step " + std::to_string(steps_) +
-                     ": a node moves at " + detail::to_text(fastest) + " mm/ms, above the limit of " +
+      throw RunError(when() + "node " + std::to_string(fastest_node()) + " moves at " +
+                     detail::to_text(fastest) + " mm/ms, above the limit of " +
                      detail::to_text(speed_limit_) +
                      " mm/ms. The run is unstable: use a smaller time step (critical step bound " +
-                     detail::to_text(critical_step()) + " ms, step " + detail::to_text(dt_) + " ms)");
+                     detail::to_text(critical_step()) + " ms, step " + detail::to_text(dt_) +
+                     " ms); or an element around the node has collapsed");
+    if (sample && !std::isfinite(sample->residual()))
+      throw RunError(when() + "an entry of the energy ledger is not a finite number");
   }
 
   /// Speeds above this stop the run [mm/ms]; for instance the yarns' wave speed.
@@ -125,6 +137,24 @@ class CentralDifference {
   /// Positive root of dt^2 omega^2 / 4 + dt rate = 1: damping forces take the predicted velocity.
   static double stable_step(double omega_squared, double rate) {
     return 2 / (rate + std::sqrt(rate * rate + omega_squared));
+  }
+
+  [[nodiscard]] std::string when() const {
+    return "time " + detail::to_text(time_) + " ms, step " + std::to_string(steps_) + ": ";
+  }
+
+  /// The first node that moves at no number, or else the fastest one.
+  [[nodiscard]] int fastest_node() const {
+    int fastest = 0;
+    double most = -1;
+    for (int n = 0; n < state_.node_count; ++n) {
+      const Vec3<R> v = state_.v.get(n);
+      const double speed_squared = static_cast<double>(dot(v, v));
+      if (!std::isfinite(speed_squared)) return n;
+      if (speed_squared > most) fastest = n;
+      most = std::max(most, speed_squared);
+    }
+    return fastest;
   }
 
   void compute_forces() {

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace crossbeam {
@@ -31,12 +32,32 @@ struct StencilWeight {
 /// points have 4, good rings below 20; beyond, the ring extrapolates.
 inline constexpr double stencil_limit = 64;
 
+namespace detail {
+
+/// Radius of a ring; 0 when a neighbour is not finite or the radius cannot be squared.
+inline double ring_radius(const std::vector<StencilNeighbour>& ring) {
+  using Limits = std::numeric_limits<double>;
+  double size = 0;
+  for (const auto& n : ring) {
+    const double distance = std::hypot(n.along, n.across);
+    if (!std::isfinite(distance)) return 0;
+    size = std::max(size, distance);
+  }
+  const double squared = size * size;
+  return squared >= Limits::min() / Limits::epsilon() && squared <= Limits::max() * Limits::epsilon()
+             ? size
+             : 0;
+}
+
+}  // namespace detail
+
 /// Second derivative along the fibre at the centre node (label `centre`) from the nearest node on
-/// the fibre line itself, on each side, tag [B-2]; empty when there is none on one side.
+/// the fibre line itself, on each side, tag [B-2]; empty when there is none on one side, or when a
+/// distance in the ring is not finite or cannot be squared.
 inline std::vector<StencilWeight> three_point_difference(
     int centre, const std::vector<StencilNeighbour>& ring) {
-  double size = 0;
-  for (const auto& n : ring) size = std::max(size, std::hypot(n.along, n.across));
+  const double size = detail::ring_radius(ring);
+  if (!(size > 0)) return {};
   const StencilNeighbour *ahead = nullptr, *behind = nullptr;
   for (const auto& n : ring) {
     // On the line up to rounding of the mesh coordinates.
@@ -47,6 +68,7 @@ inline std::vector<StencilWeight> three_point_difference(
   if (!ahead || !behind) return {};
   const double a = ahead->along, b = -behind->along;
   const double wa = 2 / (a * (a + b)), wb = 2 / (b * (a + b));
+  if (!std::isfinite(wa + wb)) return {};
   return {{behind->id, wb}, {centre, -(wa + wb)}, {ahead->id, wa}};
 }
 
@@ -55,8 +77,7 @@ inline std::vector<StencilWeight> three_point_difference(
 /// not determine them well.
 inline std::vector<StencilWeight> quadratic_difference(int centre,
                                                        const std::vector<StencilNeighbour>& ring) {
-  double size = 0;
-  for (const auto& n : ring) size = std::max(size, std::hypot(n.along, n.across));
+  const double size = detail::ring_radius(ring);
   if (ring.size() < 5 || !(size > 0)) return {};
 
   // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn,

@@ -5,11 +5,13 @@
 
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/linalg.hpp"
+#include "crossbeam/base/scalar.hpp"
 
 #include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace crossbeam {
 
@@ -45,6 +47,28 @@ Matrix2<T> convected_strain_from_increment(const Base<T>& increment, const Base<
   return (Ad + Ad.transpose() + increment.transpose() * increment) / T(2);
 }
 
+namespace detail {
+
+/// |A1 x A2| of an element base, checked: squares of its lengths and of the area keep their digits,
+/// and the vectors are not parallel up to their rounding (a thousand of them).
+/// @throws InputError otherwise
+template <class T>
+T checked_area(const std::string& name, const Base<T>& base) {
+  using std::sqrt;
+  using R = real_t<T>;
+  const T det = metric_determinant(base);
+  const T A11 = base.col(0).dot(base.col(0)), A22 = base.col(1).dot(base.col(1));
+  const R eps = epsilon_of<T>(), least = std::numeric_limits<R>::min() / (eps * eps);
+  if (!(det >= T(least) && A11 >= T(least) && A22 >= T(least) &&
+        A11 * A22 <= T(std::numeric_limits<R>::max()) &&
+        det > T(R(1 << 20) * eps * eps) * A11 * A22))
+    throw InputError(name, "area " + detail::to_text(passive(det)) + "^(1/2)", "mm^2",
+                     "two finite base vectors that span an area > 0");
+  return sqrt(det);
+}
+
+}  // namespace detail
+
 /// Coefficients d of Y_a = d_a^b A_b (Eq. 5): rows are the in-plane Cartesian axes Y1, Y2 in the
 /// element base. Y1 is A1 turned by alpha_bar towards A2.
 /// @throws InputError when the base is degenerate or alpha_bar is not finite.
@@ -54,15 +78,13 @@ Matrix2<T> cartesian_from_convected(const Base<T>& reference, const T& alpha_bar
   using std::sin;
   using std::sqrt;
   const Matrix2<T> A = metric(reference);
-  const T det = metric_determinant(reference);
-  if (!(det > T(0) && A(0, 0) > T(0) && det <= T(std::numeric_limits<T>::max())))
-    throw InputError("element base", "area " + detail::to_text(det) + "^(1/2)", "mm^2",
-                     "two finite base vectors that span an area > 0");
+  const T area = detail::checked_area("element base", reference);
   require_finite("alpha_bar", alpha_bar, "rad");
   const T c = cos(alpha_bar), s = sin(alpha_bar);
-  const T inv_sqrt_A11 = T(1) / sqrt(A(0, 0));
-  const T skew = A(0, 1) / sqrt(det * A(0, 0));
-  const T across = sqrt(A(0, 0) / det);
+  const T length = sqrt(A(0, 0));
+  const T inv_sqrt_A11 = T(1) / length;
+  const T skew = A(0, 1) / (area * length);
+  const T across = length / area;
   Matrix2<T> d;
   d << inv_sqrt_A11 * c - skew * s, across * s,  //
       -inv_sqrt_A11 * s - skew * c, across * c;
@@ -88,11 +110,16 @@ Base<T> surface_gradient(const Base<T>& current, const Matrix2<T>& d) {
   return current * d.transpose();
 }
 
-/// Area ratio sqrt(det a / det A), the surface reading of Eq. 23, tag [L-4].
+/// Area ratio sqrt(det a / det A), the surface reading of Eq. 23, tag [L-4]; 0 for a current base
+/// that has collapsed.
+/// @throws InputError when the reference base is degenerate or the current one is not finite.
 template <class T>
 T area_ratio(const Base<T>& current, const Base<T>& reference) {
   using std::sqrt;
-  return sqrt(metric_determinant(current) / metric_determinant(reference));
+  const T area = detail::checked_area("element base", reference);
+  const T det = metric_determinant(current);
+  require_finite("current element base: area squared", passive(det), "mm^4");
+  return sqrt(det) / area;
 }
 
 }  // namespace crossbeam

@@ -59,12 +59,13 @@ struct FibreStrain {
 /// The angle between warp and weft in the reference state.
 template <class R>
 struct FibreAngle {
-  R delta;  ///< delta_bar [rad]; in (0, pi)
+  R delta;  ///< delta_bar [rad]; in (1e-4, pi - 1e-4)
   R cosine, sine;
 
-  /// @throws InputError for an angle of 0 or 180 deg or beyond: the two yarns would be parallel.
+  /// @throws InputError for an angle of 0 or 180 deg, nearly so or beyond: with parallel yarns the
+  /// law would divide by a sine of zero.
   explicit FibreAngle(R delta_bar)
-      : delta(require_between("delta_bar", delta_bar, "rad", 0, std::numbers::pi)) {
+      : delta(require_between("delta_bar", delta_bar, "rad", 1e-4, std::numbers::pi - 1e-4)) {
     using std::cos;
     using std::sin;
     cosine = cos(delta_bar);

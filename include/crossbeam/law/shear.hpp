@@ -9,7 +9,9 @@
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/kinematics/fibre_frame.hpp"
 
+#include <cmath>
 #include <concepts>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -199,9 +201,9 @@ class PolynomialCurve {
     }
     for (int k = 0; k <= 120; ++k) {
       const R G = modulus(R(k) / R(100));
-      if (!(G >= R(0)))
+      if (!(G >= R(0) && G <= std::numeric_limits<R>::max()))
         throw InputError("shear.coefficients: G(" + detail::to_text(k / 100.0) + " rad)",
-                         detail::to_text(G), "kN/mm", ">= 0 for all angles from 0 to 1.2 rad");
+                         detail::to_text(G), "kN/mm", "a finite number >= 0 for all angles from 0 to 1.2 rad");
     }
   }
 
@@ -237,7 +239,8 @@ class PolynomialCurve {
 template <class R>
 class TabulatedCurve {
  public:
-  /// @param angle    [rad], from 0, strictly increasing, 2 numbers or more
+  /// @param angle    [rad], from 0, increasing by at least the cube root of the rounding unit (6e-6 in
+  ///                 double: a sum of ramps keeps no digits of a steeper step), 2 numbers or more
   /// @param traction [kN/mm], from 0, not decreasing
   TabulatedCurve(const std::vector<R>& angle, const std::vector<R>& traction) {
     if (angle.size() < 2 || angle.size() != traction.size())
@@ -254,8 +257,12 @@ class TabulatedCurve {
     for (std::size_t k = 0; k + 1 < angle.size(); ++k) {
       const std::string next = std::to_string(k + 1);
       require_finite("shear.traction[" + next + "]", traction[k + 1], "kN/mm");
-      require_positive("shear.angle[" + next + "] - shear.angle[" + std::to_string(k) + "]",
-                       angle[k + 1] - angle[k], "rad");
+      using std::cbrt;
+      const R least = cbrt(epsilon_of<R>()), step = angle[k + 1] - angle[k];
+      const std::string name = "shear.angle[" + next + "] - shear.angle[" + std::to_string(k) + "]";
+      if (!(require_finite(name, step, "rad") >= least))
+        throw InputError(name, detail::to_text(step), "rad",
+                         "a finite number >= " + detail::to_text(least));
       const R s = require_non_negative("slope of shear.traction before point " + next,
                                        (traction[k + 1] - traction[k]) / (angle[k + 1] - angle[k]),
                                        "kN/mm/rad");

@@ -13,7 +13,9 @@
 #include "crossbeam/kinematics/fibre_frame.hpp"
 #include "crossbeam/law/shear.hpp"
 
+#include <cmath>
 #include <concepts>
+#include <limits>
 
 namespace crossbeam {
 
@@ -136,10 +138,25 @@ struct MembraneResponse {
   T energy{};            ///< per unit reference area [kN/mm]
   Matrix2<T> S;          ///< second Piola-Kirchhoff stress, Y components [kN/mm, t = 1]
   Matrix3<T> dS_dE;      ///< rows (S11, S22, S12), columns (E11, E22, 2 E12); on request
+  /// Of the cell; outside_kinematics also for a strain that no deformation has (yarns on one line or
+  /// beyond), not_converged also for an answer beyond the largest number.
   CellStatus status = CellStatus::converged;
 };
 
 enum class Tangent { no, yes };
+
+namespace detail {
+
+/// Whether every entry is a number and finite.
+template <class Derived>
+bool all_finite(const Eigen::MatrixBase<Derived>& a) {
+  using std::isfinite;
+  for (Eigen::Index i = 0; i < a.size(); ++i)
+    if (!isfinite(passive(a.derived().coeff(i / a.cols(), i % a.cols())))) return false;
+  return true;
+}
+
+}  // namespace detail
 
 /// S = c^T m c (Eq. 20 with contravariant m) at the Cartesian strain E; tags [L-1], [L-2], [L-3].
 /// A cell without a potential (SecondOrderCell) has no tangent, and its energy stays 0.
@@ -171,15 +188,29 @@ MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
   } else {
     CROSSBEAM_EXPECTS(want == Tangent::no);
   }
+  if (out.status == CellStatus::converged) {
+    using std::isfinite;
+    const T cosine = fibre_cosine(state.fibres.beta, state.fibres.lambda1, state.fibres.lambda2,
+                                  law.reference().cosine);
+    const bool tangent = want == Tangent::yes;
+    if (!(magnitude(cosine) < T(R(1) - R(8) * std::numeric_limits<R>::epsilon())))
+      out.status = CellStatus::outside_kinematics;
+    else if (!(detail::all_finite(out.S) && isfinite(passive(out.energy)) &&
+               (!tangent || detail::all_finite(out.dS_dE))))
+      out.status = CellStatus::not_converged;
+  }
   return out;
 }
 
 /// Cauchy stress (Eq. 21) from S and the surface gradient; J is the area ratio. For a host whose J
 /// is that of the volume, give its thickness stretch: the membrane force does not change, tag [L-4].
+/// @throws InputError for a collapsed surface, J = 0, which has no Cauchy stress
 template <class T>
 Matrix3<T> cauchy_stress(const Matrix2<T>& S, const Base<T>& gradient, const T& area_ratio,
                          const T& thickness_stretch = T(1)) {
-  return gradient * S * gradient.transpose() / (area_ratio * thickness_stretch);
+  const T J = area_ratio * thickness_stretch;
+  require_positive("area_ratio * thickness_stretch", passive(J), "-");
+  return gradient * S * gradient.transpose() / J;
 }
 /// @}
 

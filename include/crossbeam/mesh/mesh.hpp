@@ -92,7 +92,10 @@ struct Mesh {
     double longest = 0;
     for (int a = 0; a < Corners; ++a)
       longest = std::max(longest, detail::norm(X[(a + 1) % Corners] - X[a]));
-    if (!(twice_area > 1e-9 * longest * longest))
+    // An area below the second bound has not all its digits.
+    constexpr double least =
+        std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+    if (!(twice_area > 1e-9 * longest * longest && twice_area > least))
       throw InputError(name + " area", detail::to_text(twice_area / 2), "mm^2",
                        "> 0 (the corners are collinear or coincide)");
     const Vec3<double> n = (1 / twice_area) * area_vector;
@@ -116,13 +119,18 @@ struct Mesh {
 
   static Vec3<double> direction(const std::string& name, const Vec3<double>& v,
                                 const Vec3<double>& n) {
-    const double length = detail::norm(v);
-    require_positive(name + " length", length, "mm");
-    const double out_of_plane = std::asin(std::min(std::abs(dot(v, n)) / length, 1.0));
+    const double size = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+    require_positive(name + " length", size, "mm");
+    // A power of two brings it to about 1 first, exactly: no length over- or underflows.
+    const int exponent = std::ilogb(size);
+    const Vec3<double> u{std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent),
+                         std::scalbn(v.z, -exponent)};
+    const double length = detail::norm(u);
+    const double out_of_plane = std::asin(std::min(std::abs(dot(u, n)) / length, 1.0));
     if (out_of_plane > 5 * std::numbers::pi / 180)
       throw InputError(name + " angle to the element's plane",
                        detail::to_text(out_of_plane * 180 / std::numbers::pi), "deg", "0 to 5");
-    const Vec3<double> in_plane = v - dot(v, n) * n;
+    const Vec3<double> in_plane = u - dot(u, n) * n;
     return (1 / detail::norm(in_plane)) * in_plane;
   }
 };

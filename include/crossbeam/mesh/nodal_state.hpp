@@ -5,6 +5,8 @@
 #include "crossbeam/mesh/arrays.hpp"
 #include "crossbeam/mesh/mesh.hpp"
 
+#include <limits>
+#include <string>
 #include <vector>
 
 namespace crossbeam {
@@ -55,6 +57,12 @@ struct NodalState {
       area[n] = R(A[n]);
       mass[n] = R(A[n] * areal_mass);
       inverse_mass[n] = R(1 / (A[n] * areal_mass));
+      // In float a mass may vanish that is one in double.
+      const R most = std::numeric_limits<R>::max();
+      if (!(mass[n] > R(0) && mass[n] <= most && inverse_mass[n] > R(0) && inverse_mass[n] <= most))
+        throw InputError("mass of mesh.nodes[" + std::to_string(n) + "]",
+                         detail::to_text(A[n] * areal_mass), "kg",
+                         "> 0 and finite in the run's precision, with its reciprocal");
     }
     for (const NodeConstraint& c : constraints) {
       if (c.node < 0 || c.node >= node_count)
