@@ -1,7 +1,7 @@
 #pragma once
 /// @file
 /// The axial law of a yarn: tension against elongation. Linear is the paper's; any convex law that
-/// starts at zero keeps the cell's theorems (docs/theory/cell.md, [C-12]).
+/// starts at zero keeps the cell's theorems (docs/theory/cell.md, [C-13]).
 
 #include "crossbeam/base/scalar.hpp"
 
