@@ -8,8 +8,8 @@
 
 namespace textile {
 
-/// A yarn: chord of length l from (L + u) and h, energy ka/2 (l - l0)^2 + kb/2 t^2 with the deflection
-/// t = c0 (h - H) - s0 u across the unstressed chord.
+/// A yarn: chord of length l from (L + u) and h, energy ka/2 (l - l0)^2 + kb/2 t^2 with the
+/// deflection t = c0 (h - H) - s0 u across the unstressed chord.
 struct IndependentYarn {
   using R = long double;
   R youngs_modulus = 35.4L, I = 1e-4L, L = 2.5L, H = 0.4L;
@@ -58,16 +58,16 @@ struct IndependentCell {
   struct End {
     R u, h;
   };
-  /// A yarn under the contact force q: from its lowest point on, upwards() grows with the height, and
-  /// at constant q the force grows with the elongation.
+  /// A yarn under the contact force q: upwards() crosses q once as the height grows, and at
+  /// constant q the force grows with the elongation.
   static End end(const IndependentYarn& y, const Prescribed& p, R q) {
     const auto height = [&](R u) {
       return root(0, 4 * y.H, [&](R h) { return y.upwards(u, h) - q; });
     };
-    const R u = p.what == Prescribed::What::elongation
-                    ? p.value
-                    : root(-0.3L * y.L, 0.3L * y.L,
-                           [&](R e) { return y.along(e, height(e)) - p.value; });
+    const R u =
+        p.what == Prescribed::What::elongation
+            ? p.value
+            : root(-0.3L * y.L, 0.3L * y.L, [&](R e) { return y.along(e, height(e)) - p.value; });
     return {u, height(u)};
   }
 

@@ -22,8 +22,8 @@ using Run = CentralDifference<T>;
 /// A sheet whose nodes start at `x`; components that may move are off by up to `perturbation`.
 template <class Element, class Law>
 Run sheet(const Mesh<Element::corners>& m, const Law& law,
-          const std::vector<NodeConstraint>& constraints, const Points& x,
-          verify::Random& random, double perturbation, double hourglass_modulus = 0.01) {
+          const std::vector<NodeConstraint>& constraints, const Points& x, verify::Random& random,
+          double perturbation, double hourglass_modulus = 0.01) {
   NodalState<double> state(m, areal_mass, constraints);
   for (int n = 0; n < m.node_count; ++n) {
     const auto d = random.vector(perturbation);
@@ -36,8 +36,7 @@ Run sheet(const Mesh<Element::corners>& m, const Law& law,
   return run;
 }
 
-/// Steps until no free component of a nodal force exceeds `tolerance` [kN], twice the check's
-/// interval in a row.
+/// Steps until no free component of a nodal force exceeds `tolerance` [kN], ten steps in a row.
 ///
 /// Between steps the velocities are damped critically for the mode that moves: its frequency is the
 /// Rayleigh quotient of the last change of the forces (Underwood's adaptive dynamic relaxation).
@@ -46,29 +45,28 @@ inline void relax(Run& run, double tolerance, long most = 400000) {
   NodalState<double>& s = run.state();
   const double dt = 0.9 * run.critical_step();
   run.start(dt);
-  auto before = s.f;
+  auto before = s.f, moved = s.v;  // forces and velocities of the last step
   double residual = 0;
   long step = 0;
   int calm = 0;
   for (; step < most && calm < 10; ++step) {
-    const auto v = s.v;
     run.step();
     double stiffness = 0, mass = 0;
     residual = 0;
-    const auto see = [&](const auto& f, const auto& f_before, const auto& v_before,
-                         const auto& free) {
+    const auto see = [&](const auto& f, const auto& f_before, const auto& v, const auto& free) {
       for (int n = 0; n < s.node_count; ++n) {
         if (free[n] == 0) continue;
         residual = std::max(residual, std::abs(f[n]));
-        stiffness -= v_before[n] * (f[n] - f_before[n]);
-        mass += s.mass[n] * v_before[n] * v_before[n];
+        stiffness -= v[n] * (f[n] - f_before[n]);
+        mass += s.mass[n] * v[n] * v[n];
       }
     };
-    see(s.f.x, before.x, v.x, s.free.x);
-    see(s.f.y, before.y, v.y, s.free.y);
-    see(s.f.z, before.z, v.z, s.free.z);
+    see(s.f.x, before.x, moved.x, s.free.x);
+    see(s.f.y, before.y, moved.y, s.free.y);
+    see(s.f.z, before.z, moved.z, s.free.z);
     calm = residual <= tolerance ? calm + 1 : 0;
     before = s.f;
+    moved = s.v;
     const double omega_dt = mass > 0 ? std::sqrt(std::max(stiffness * dt / mass, 0.0)) : 0;
     // Stable for omega dt <= 1.8, because 1.8^2 < 2 (1 + keep).
     const double a = std::min(omega_dt, 0.2);
@@ -80,7 +78,7 @@ inline void relax(Run& run, double tolerance, long most = 400000) {
   REQUIRE(residual <= tolerance);
 }
 
-/// Yarns that are as stiff pressed as pulled and all but straight: the limit in which trellis shear,
+/// Yarns that are as stiff pressed as pulled and all but straight: the limit in which trellises,
 /// chains and elastic lines have their closed forms. EA/l0 of Table 1 times `stiffer`.
 inline CellParameters<double> straight_yarns(double stiffer = 1) {
   CellParameters<double> p;
@@ -90,8 +88,7 @@ inline CellParameters<double> straight_yarns(double stiffer = 1) {
     yarn->second_moment_of_area = 0;
   }
   // A slack yarn has no stiffness of its own.
-  p.residual_compression_stiffness =
-      p.warp.youngs_modulus * p.warp.cross_section / p.warp.length;
+  p.residual_compression_stiffness = p.warp.youngs_modulus * p.warp.cross_section / p.warp.length;
   return p;
 }
 

@@ -1,4 +1,4 @@
-// Strips and cruciforms pulled along their yarns: whole meshes against the cell solved by bisection.
+// Strips and cruciforms pulled along their yarns: whole meshes against the cell by bisection.
 
 #include "support/claim.hpp"
 #include "textile/independent_cell.hpp"
@@ -23,9 +23,7 @@ using verify::Worst;
 constexpr double length = 20, width = 10;  // of the specimen, along x = warp and y = weft [mm]
 constexpr double cell_length = 2.5;        // L of both yarns [mm]
 
-Prescribed elongation(double strain) {
-  return {Prescribed::What::elongation, strain * 2.5L};
-}
+Prescribed elongation(double strain) { return {Prescribed::What::elongation, strain * 2.5L}; }
 Prescribed force(double f) { return {Prescribed::What::force, f}; }
 
 /// Strains and tensions per width [kN/mm] of the cell, from its own yarns' ends.
@@ -59,8 +57,8 @@ struct Specimen {
     std::vector<NodeConstraint> out;
     for (int n = 0; n < m.node_count; ++n) {
       const auto X = m.nodes.get(n);
-      out.push_back({n, X.x == 0 || (hold[0] && X.x == length),
-                     X.y == 0 || (hold[1] && X.y == width), true});
+      out.push_back(
+          {n, X.x == 0 || (hold[0] && X.x == length), X.y == 0 || (hold[1] && X.y == width), true});
     }
     return out;
   }
@@ -116,7 +114,7 @@ std::vector<double> percent(std::vector<double> strains) {
 
 TEST_SUITE_BEGIN("textile");
 
-TEST_CASE("V-TEX-01 a strip pulled along its warp has force and contraction of a cell with a free weft") {
+TEST_CASE("V-TEX-01 a strip pulled along its warp answers as a cell with a free weft") {
   VERIFY_RANDOM(random, 901);
   const std::vector<double> strains{0.005, 0.01, 0.012, 0.015, 0.02, 0.03};
   const std::vector<double> printed{9.4e-4, 3.8e-3, 8.9e-3, 0.0805, 0.2546, 0.604};  // [kN]
@@ -172,14 +170,26 @@ TEST_CASE("V-TEX-01 a strip pulled along its warp has force and contraction of a
     contraction.y.push_back(100 * b.strain[1]);
   }
   const double lock = std::hypot(2.5, 0.4) / 2.5 - 1, k_a = 35.4 / std::hypot(2.5, 0.4);
-  const Curve ideal{"yarns without bending", {0, 100 * lock, 3}, {0, 0, N * k_a * (0.03 - lock)},
+  const Curve ideal{"yarns without bending",
+                    {0, 100 * lock, 3},
+                    {0, 0, N * k_a * (0.03 - lock)},
                     Curve::Style::guide};
-  show(Plot{"V-TEX-01", "Uniaxial tension of a strip", "strain of the warp [%]",
-            "force per width [N/mm]", false, false, {curve, points, ideal},
+  show(Plot{"V-TEX-01",
+            "Uniaxial tension of a strip",
+            "strain of the warp [%]",
+            "force per width [N/mm]",
+            false,
+            false,
+            {curve, points, ideal},
             "Nearly free while the warp straightens at the weft's expense, up to 1.27 %; then the "
             "yarn itself is stretched. The mesh lies on the cell's curve."});
-  show(Plot{"V-TEX-01", "Contraction of the strip", "strain of the warp [%]",
-            "strain of the weft [%]", false, false, {contraction, narrow},
+  show(Plot{"V-TEX-01",
+            "Contraction of the strip",
+            "strain of the warp [%]",
+            "strain of the weft [%]",
+            false,
+            false,
+            {contraction, narrow},
             "Crimp interchange: the free weft shortens up to three times as much as the warp is "
             "stretched, and no further once the warp is straight."});
 }
@@ -192,8 +202,8 @@ TEST_CASE("V-TEX-02 a sheet pulled both ways has the forces of the cell at every
     double e1, e2;
   };
   Curve mesh_points{"mesh", {}, {}, Curve::Style::points};
-  for (const Ratio& r : {Ratio{"1:1", 1, 1}, Ratio{"1:2", 0.5, 1}, Ratio{"2:1", 1, 0.5},
-                         Ratio{"1:0", 1, 0}})
+  for (const Ratio& r :
+       {Ratio{"1:1", 1, 1}, Ratio{"1:2", 0.5, 1}, Ratio{"2:1", 1, 0.5}, Ratio{"1:0", 1, 0}})
     for (double strain : {0.001, 0.01, 0.02}) {
       const Biaxial b = exact(elongation(r.e1 * strain), elongation(r.e2 * strain));
       REQUIRE(std::min(b.tension[0], b.tension[1]) > 0);
@@ -252,8 +262,8 @@ TEST_CASE("V-TEX-02 a sheet pulled both ways has the forces of the cell at every
   std::vector<double> off;
   for (double E3 : {10.0, 20.0, 40.0, 1e14}) {
     const Specimen<Quadrilateral<1>> cross(random, true, true);
-    auto run = cross.model(fabric_with(table_1_I, E3), exact(elongation(strain), elongation(strain)),
-                           random);
+    auto run = cross.model(fabric_with(table_1_I, E3),
+                           exact(elongation(strain), elongation(strain)), random);
     relax(run, 1e-12);
     off.push_back(std::abs(cross.tension(run, 0) / rigid - 1));
   }
@@ -287,8 +297,13 @@ TEST_CASE("V-TEX-02 a sheet pulled both ways has the forces of the cell at every
     warp.x.push_back(100 * b.strain[0]);
     warp.y.push_back(N * b.tension[0]);
   }
-  show(Plot{"V-TEX-02", "Biaxial tension at forces 1:2", "strain [%]", "force per width [N/mm]",
-            false, false, {weft, stretched, warp, shortened},
+  show(Plot{"V-TEX-02",
+            "Biaxial tension at forces 1:2",
+            "strain [%]",
+            "force per width [N/mm]",
+            false,
+            false,
+            {weft, stretched, warp, shortened},
             "Pulled half as hard, the warp shortens at first: the weft takes its crimp."});
 }
 
