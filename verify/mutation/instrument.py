@@ -340,6 +340,8 @@ class Instrumenter:
         previous = self.tokens[i - 1]
         if previous.text in ("(", ",", "return", "operator", "=", "{", ";", "<<", "]>", "?", ":"):
             return
+        if "text" in (previous.kind, self.tokens[i + 1].kind):
+            return  # the words of a message
         if token.text in ("&&", "||") and self.guards_pointer(i):
             return
         loop = token.loop and token.text in LOOP
@@ -429,12 +431,16 @@ class Instrumenter:
                 replaced = f"1.5 * {text}"
         else:
             return
-        head = ""
-        if previous.text in ("(", "["):
+        head, tail = "", following.text if following.text in (")", "]") else ""
+        if kind == "index" and self.is_matrix_index(i) and previous.text in ("(", ","):
+            first = previous.text == "(" and following.text == ","
+            head = self.tokens[i - 2 if previous.text == "(" else i - 4].text + "("
+            head += "" if previous.text == "(" else self.tokens[i - 2].text + ", "
+            tail = f", {self.tokens[i + 2].text})" if first else ")"
+        elif previous.text in ("(", "["):
             head = self.tokens[i - 2].text + previous.text
         elif previous.text in BINARY:
             head = previous.text + " "
-        tail = following.text if following.text in (")", "]") else ""
         context = lambda x: f"{head}{x}{tail}"
         site = self.add(token, kind, [(context(text), context(replaced))])
         if site is not None:
