@@ -264,6 +264,13 @@ TEST_CASE("V-CELL-19 the residual compressive stiffness is an energy of its own"
         verify::taylor_test(3, [&](double e) { return remainder(e, true); }, 1, noise);
     third.see(slope_3.deviation, "sample", sample, slope_3.table);
   }
+  // A yarn at its own length is not shortened: the virgin tangent is that of the taut yarn.
+  Parameters p = verify::table_1();
+  const Answer without = answer(Cell(p), 0, 0);
+  p.residual_compression_stiffness = 3;
+  const Answer with = answer(Cell(p), 0, 0);
+  CHECK(with.tangent.K11 == without.tangent.K11);
+  CHECK(with.tangent.K22 == without.tangent.K22);
   exact.claim("V-CELL-19", 1e-15, "F, U and K against kres min(u, 0), relative");
   // As in V-CELL-03.
   second.claim("V-CELL-19", 0.02, "|slope - 2| of the energy with its forces");

@@ -109,6 +109,68 @@ TEST_CASE(
   stretches.claim("V-ELEM-01", 5e-14, "yarn stretches");
   // That strain error times the straight yarn's 15 kN/mm.
   tensions.claim("V-ELEM-01", 1e-12, "yarn tensions [kN/mm]");
+
+  // Beyond affine maps: the fibre vectors at each point are the derivatives of the bilinear map there
+  // and the weights its area, both from positions on the element alone, anywhere in space.
+  Worst fibres, weights;
+  const auto at_points = [&](auto element) {
+    using Element = decltype(element);
+    for (int sample = 0; sample < 50; ++sample) {
+      const Matrix3d Q = random.rotation();
+      const Vector3d offset = random.vector(20);
+      std::array<Vector3d, 4> X, x;
+      const double corner[4][2] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
+      for (int a = 0; a < 4; ++a) {
+        const Vector3d in_plane(corner[a][0] + random.uniform(-0.5, 0.5),
+                                corner[a][1] + random.uniform(-0.5, 0.5), 0);
+        X[a] = Q * in_plane + offset;
+        x[a] = X[a] + random.vector(0.5);
+      }
+      const FibreDirections<double> directions{vec3(Q * direction(warp_angle)),
+                                               vec3(Q * direction(warp_angle + fibre_angle))};
+      const auto at = [](const std::array<Vector3d, 4>& p, double xi, double eta) -> Vector3d {
+        return ((1 - xi) * (1 - eta) * p[0] + (1 + xi) * (1 - eta) * p[1] +
+                (1 + xi) * (1 + eta) * p[2] + (1 - xi) * (1 + eta) * p[3]) / 4;
+      };
+      std::array<Vec3<double>, 4> corners, now;
+      for (int a = 0; a < 4; ++a) {
+        corners[a] = vec3(X[a]);
+        now[a] = vec3(x[a]);
+      }
+      Vec3<double> D[Element::vectors];
+      const Vec3<double> moved[4] = {now[0], now[1], now[2], now[3]};
+      Element::relative_vectors(moved, D);
+      const auto points = Element::coefficients(corners, directions);
+      for (int p = 0; p < Element::points; ++p) {
+        const double g = Element::points == 1 ? 0 : 1 / std::sqrt(3.0);
+        const double xi = p % 2 == 0 ? -g : g, eta = p / 2 == 0 ? -g : g;
+        // A bilinear map is linear along each coordinate: differences are derivatives.
+        const auto tangents = [&](const std::array<Vector3d, 4>& c) {
+          Eigen::Matrix<double, 3, 2> J;
+          J.col(0) = (at(c, 1, eta) - at(c, -1, eta)) / 2;
+          J.col(1) = (at(c, xi, 1) - at(c, xi, -1)) / 2;
+          return J;
+        };
+        const Eigen::Matrix<double, 3, 2> J = tangents(X), j = tangents(x);
+        const double area = J.col(0).cross(J.col(1)).norm() * (Element::points == 1 ? 4 : 1);
+        weights.see(std::abs(points[p].weight / area - 1), sample, p);
+        const auto see = [&](const auto& t, const Vec3<double>& F) {
+          const Vector3d expected =
+              j * ((J.transpose() * J).inverse() * (J.transpose() * eigen(F)));
+          Vector3d f = Vector3d::Zero();
+          for (int k = 0; k < Element::membrane_vectors; ++k) f += t[k] * eigen(D[k]);
+          fibres.see((f - expected).norm(), sample, p);
+        };
+        see(points[p].t1, directions.warp);
+        see(points[p].t2, directions.weft);
+      }
+    }
+  };
+  at_points(Quadrilateral<1>{});
+  at_points(Quadrilateral<4>{});
+  // Coordinates of 20 mm round to 4e-15 mm, over edges of 3 mm and flat corners.
+  fibres.claim("V-ELEM-01", 1e-13, "fibre vectors at the points of quadrilaterals, non-affine maps");
+  weights.claim("V-ELEM-01", 1e-13, "areas of the points of quadrilaterals");
 }
 
 TEST_CASE("V-ELEM-02 rigid motions change neither energy nor shear angle, and forces turn along") {

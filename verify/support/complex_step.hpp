@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <complex>
 #include <type_traits>
 
@@ -45,6 +46,7 @@ struct ComplexStep {
   friend bool operator<=(const ComplexStep& a, const ComplexStep& b) { return !(b < a); }
   friend bool operator>=(const ComplexStep& a, const ComplexStep& b) { return !(a < b); }
   friend ComplexStep sqrt(const ComplexStep& a) { return std::sqrt(a.z); }
+  friend bool isfinite(const ComplexStep& a) { return std::isfinite(a.value()); }
 };
 
 }  // namespace verify
