@@ -1,9 +1,10 @@
 #include "references.hpp"
 
+#include "toml.hpp"
+
 #include "crossbeam/base/error.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,9 @@ References load_references(const std::filesystem::path& file) {
     throw InputError("reference file",
                      fmt::format("{}:{}", file.string(), error.source().begin.line), "",
                      fmt::format("a readable TOML file ({})", error.description()));
+  } catch (const UnexpectedText& error) {
+    throw InputError("reference file", file.string(), "",
+                     fmt::format("a readable TOML file ({})", error.what()));
   }
   const Reader read(root, file.string());
   References r;

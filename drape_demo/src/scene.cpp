@@ -2,9 +2,9 @@
 
 #include "fields.hpp"
 #include "spelling.hpp"
+#include "toml.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <charconv>
@@ -123,7 +123,7 @@ std::string first_known(const std::vector<std::string>& places) {
 void check_polynomial(const ShearInput& shear, const Locator& where) {
   const std::string field = "fabric.shear.coefficients";
   const std::string rule = fmt::format(
-      "G(g) = sum of coefficients[k] g^k must be >= 0 for every shear angle g from 0 to {} rad",
+      "G(g) = sum of coefficients[k] g^k must be finite and >= 0 for every shear angle g from 0 to {} rad",
       largest_shear);
   if (shear.coefficients.empty())
     throw InputError(field, "[]", "kN/mm",
@@ -135,7 +135,7 @@ void check_polynomial(const ShearInput& shear, const Locator& where) {
     double modulus = 0;
     for (auto c = shear.coefficients.rbegin(); c != shear.coefficients.rend(); ++c)
       modulus = modulus * angle + *c;
-    if (!(modulus >= 0))
+    if (!(modulus >= 0 && std::isfinite(modulus)))
       throw InputError(
           field, fmt::format("{}", fmt::join(shear.coefficients, ", ")), "kN/mm",
           fmt::format("{}, but G({:.3f}) = {:.4g}", rule, angle, modulus) + where(field));
@@ -172,24 +172,58 @@ void check_table(const ShearInput& shear, const Locator& where) {
            fmt::format("{}", shear.angle.back()), "rad", "a number < pi/2");
 }
 
+/// What the laws themselves refuse in the precision of the run, with the place in the file.
+template <class R>
+void check_laws(const FabricInput& fabric, const Locator& where) {
+  const auto located = [&where](const std::vector<std::string>& fields, const auto& build) {
+    try {
+      build();
+    } catch (const InputError& error) {
+      std::vector<std::string> places;
+      for (const auto& field : fields) places.push_back(where(field));
+      throw InputError(error, first_known(places));
+    }
+  };
+  const auto real = [](const std::vector<double>& list) {
+    return std::vector<R>(list.begin(), list.end());
+  };
+  located({"fabric.cell", "integration.precision"},
+          [&] { crossbeam::validate(fabric.cell.cast<R>(), "fabric.cell"); });
+  const ShearInput& shear = fabric.shear;
+  if (shear.kind == ShearLawKind::constant)
+    located({"fabric.shear.modulus", "integration.precision"}, [&] {
+      static_cast<void>(ConstantShear<R>(R(shear.modulus), FibreAngle<R>::right(), shear.measure));
+    });
+  if (shear.kind == ShearLawKind::polynomial)
+    located({"fabric.shear.coefficients", "integration.precision"},
+            [&] { static_cast<void>(PolynomialCurve<R>(real(shear.coefficients))); });
+  if (shear.kind == ShearLawKind::tabulated)
+    located({"fabric.shear.angle", "integration.precision"}, [&] {
+      static_cast<void>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)));
+    });
+}
+
 void check_case(const DrapeCase& c, const Locator& where) {
   RangeCheck ranges(where);
   visit_fields(c, ranges);
-  crossbeam::validate(c.fabric.cell, "fabric.cell");
-
   if (c.fabric.shear.kind == ShearLawKind::polynomial) check_polynomial(c.fabric.shear, where);
   if (c.fabric.shear.kind == ShearLawKind::tabulated) check_table(c.fabric.shear, where);
+  if (c.integration.precision == Precision::float_)
+    check_laws<float>(c.fabric, where);
+  else
+    check_laws<double>(c.fabric, where);
 
   const double smaller = std::min(c.blank.half_width, c.blank.half_length);
   if (c.blank.element_size > smaller / 2)
     throw InputError(
         "blank.element_size", fmt::format("{}", c.blank.element_size), "mm",
         fmt::format("at most half of the smaller of half_width and half_length, {}", smaller / 2) +
-            where("blank.element_size"));
+            first_known({where("blank.element_size"), where("blank.half_width"),
+                         where("blank.half_length")}));
   if (c.blank.perturbation > c.blank.element_size / 10)
     throw InputError("blank.perturbation", fmt::format("{}", c.blank.perturbation), "mm",
                      fmt::format("at most a tenth of element_size, {}", c.blank.element_size / 10) +
-                         where("blank.perturbation"));
+                         first_known({where("blank.perturbation"), where("blank.element_size")}));
 }
 
 // -------------------------------------------------------------------------------------------------
@@ -224,7 +258,7 @@ class TomlReader {
     const toml::node* node = take(name);
     if (node == nullptr) return;
     if (!node->is_number()) refuse(path_.name(name), *node, unit, range.text());
-    value = T(*node->value<double>());
+    value = T(number(*node));
   }
 
   template <class T>
@@ -269,7 +303,7 @@ class TomlReader {
     values.clear();
     for (const toml::node& item : *array) {
       if (!item.is_number()) refuse(path_.name(name), item, unit, admissible);
-      values.push_back(*item.value<double>());
+      values.push_back(number(item));
     }
   }
 
@@ -296,6 +330,12 @@ class TomlReader {
     const toml::node* node = level.table == nullptr ? nullptr : level.table->get(name);
     if (node != nullptr) lines_[path_.name(name)] = node->source().begin.line;
     return node;
+  }
+
+  /// toml++ has no double for a whole number beyond 2^53; the nearest one will do.
+  static double number(const toml::node& node) {
+    if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
+    return node.as_floating_point()->get();
   }
 
   [[nodiscard]] std::string at(const toml::node& node) const {
@@ -473,15 +513,62 @@ DrapeCase load_scene(const std::filesystem::path& file) {
   return parse_scene(text, file.string());
 }
 
-DrapeCase parse_scene(std::string_view text, const std::string& source) {
-  toml::table root;
-  try {
-    root = toml::parse(text, source);
-  } catch (const toml::parse_error& error) {
-    throw InputError("scene file", fmt::format("{}:{}", source, error.source().begin.line), "",
-                     fmt::format("valid TOML ({}, column {})", error.description(),
-                                 error.source().begin.column));
+namespace {
+
+[[noreturn]] void refuse_text(const std::string& source, std::size_t line, const std::string& why) {
+  throw InputError("scene file", fmt::format("{}:{}", source, line), "", "valid TOML (" + why + ")");
+}
+
+/// TOML has no control characters but the tab and ends of line; toml++ 3.3 does not refuse them all.
+void refuse_control_characters(std::string_view text, const std::string& source) {
+  std::size_t line = 1;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c == '\n') ++line;
+    const bool end_of_line = c == '\n' || (c == '\r' && i + 1 < text.size() && text[i + 1] == '\n');
+    if ((c < 0x20 && c != '\t' && !end_of_line) || c == 0x7f)
+      refuse_text(source, line, fmt::format("there is a control character, {:#04x}", c));
   }
+}
+
+/// Whether toml++ meets something unexpected in the text.
+bool is_unexpected(std::string_view text) {
+  try {
+    static_cast<void>(toml::parse(text));
+  } catch (const toml::parse_error&) {
+  } catch (const UnexpectedText&) {
+    return true;
+  }
+  return false;
+}
+
+/// The first line with which the text is unexpected: the parser reads on from there no further.
+std::size_t unexpected_line(std::string_view text) {
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == '\n') ends.push_back(i + 1);
+  ends.push_back(text.size());
+  const auto first = std::partition_point(
+      ends.begin(), ends.end(), [&](std::size_t end) { return !is_unexpected(text.substr(0, end)); });
+  return static_cast<std::size_t>(first - ends.begin()) + 1;
+}
+
+toml::table parsed(std::string_view text, const std::string& source) {
+  refuse_control_characters(text, source);
+  try {
+    return toml::parse(text, source);
+  } catch (const toml::parse_error& error) {
+    refuse_text(source, error.source().begin.line,
+                fmt::format("{}, column {}", error.description(), error.source().begin.column));
+  } catch (const UnexpectedText&) {
+    refuse_text(source, unexpected_line(text), "a value, a comma or a bracket too many or too few");
+  }
+}
+
+}  // namespace
+
+DrapeCase parse_scene(std::string_view text, const std::string& source) {
+  const toml::table root = parsed(text, source);
   DrapeCase drape_case;
   TomlReader reader(root, source);
   visit_fields(drape_case, reader);

@@ -189,9 +189,7 @@ TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and
   struct Blow {
     const char* name;
     CellParameters<double> cell{};
-    double step_factor = 0.5;
     std::function<void(NodalState<double>&)> start = [](auto&) {};
-    double bound = 2e-2;  ///< of the ledger's drift
   };
   const auto scaled = [](double x, double y) {
     return [x, y](NodalState<double>& s) {
@@ -206,63 +204,65 @@ TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and
   CellParameters<double> straight;
   straight.warp.second_moment_of_area = straight.weft.second_moment_of_area = 0;
   std::vector<Blow> blows;
-  blows.push_back({"10 % warp strain at once", {}, 0.5, scaled(1.1, 1)});
-  blows.push_back({"10 % strain both ways at once", {}, 0.5, scaled(1.1, 1.1)});
-  blows.push_back({"10 % compression at once", {}, 0.5, scaled(0.9, 0.9)});
-  blows.push_back({"10 % compression, no bending", straight, 0.5, scaled(0.9, 0.9)});
-  blows.push_back({"warp 1000 times weft", uneven, 0.5, scaled(1.02, 1.02)});
-  blows.push_back({"warp 1000 times weft, 10 % along the weft", uneven, 0.5, scaled(1, 1.1)});
-  blows.push_back({"node through the opposite edge", {}, 0.1, [](NodalState<double>& s) {
+  blows.push_back({"10 % warp strain at once", {}, scaled(1.1, 1)});
+  blows.push_back({"10 % strain both ways at once", {}, scaled(1.1, 1.1)});
+  blows.push_back({"10 % compression at once", {}, scaled(0.9, 0.9)});
+  blows.push_back({"10 % compression, no bending", straight, scaled(0.9, 0.9)});
+  blows.push_back({"warp 1000 times weft", uneven, scaled(1.02, 1.02)});
+  blows.push_back({"warp 1000 times weft, 10 % along the weft", uneven, scaled(1, 1.1)});
+  blows.push_back({"node through the opposite edge", {}, [](NodalState<double>& s) {
                      const auto p = s.x.get(4 * 9 + 4);
                      s.x.set(4 * 9 + 4, p + Vec3<double>{7, 1, 0.1});
                    }});
-  blows.push_back({"1 km/s on one node", {}, 0.1, [](NodalState<double>& s) {
+  blows.push_back({"1 km/s on one node", {}, [](NodalState<double>& s) {
                      s.v.set(4 * 9 + 4, {300, 200, 1000});
                    }});
-  long silent = 0, ran = 0;
+  long silent = 0;
   verify::Plot plot;
   plot.claim = "V-STRESS-08";
   plot.title = "Energy accounts of sheets under blows";
   plot.x_label = "step";
-  plot.y_label = "change of the ledger's residual over the largest energy [-]";
+  plot.y_label = "change of the ledger's residual in 50 steps over the largest energy [-]";
   plot.log_y = true;
-  plot.caption = "Nothing may grow without end: what the fabric gets, the ledger has.";
-  for (const Blow& blow : blows) {
+  plot.caption =
+      "Steps of a tenth of the critical one: no curve may climb without end, for what the fabric "
+      "gets, the ledger has.";
+  const auto drift = [&](const Blow& blow, double step_factor, verify::Curve& curve) {
     const auto m = rectangle(40, 40, 8, 8, 0.3);
     const auto law = fabric(pi / 2, 0.01, blow.cell);
     NodalState<double> state(m, areal_mass);
     blow.start(state);
-    CentralDifference<NativePack<double>> run(state, areal_mass);
-    run.add(std::make_unique<
-            MembraneSweep<NativePack<double>, Quadrilateral<1>, decltype(law)>>(
+    using T = NativePack<double>;
+    CentralDifference<T> run(state, areal_mass);
+    run.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
         m, law, areal_mass, MembraneOptions{1e-3, 0}));
-    run.add(std::make_unique<BendingSweep<NativePack<double>>>(
-        m, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
-    run.start(blow.step_factor * run.critical_step());
-    verify::Curve curve;
+    run.add(std::make_unique<BendingSweep<T>>(m, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
+    run.start(step_factor * run.critical_step());
     curve.name = blow.name;
-    End end;
-    for (int part = 1; part <= 20 && end.stopped.empty(); ++part) {
-      const End here = advance(run, 50);
-      end.stopped = here.stopped;
-      end.finite = here.finite;
-      end.drift = std::max(end.drift, here.drift);
+    double largest = 0;
+    for (int part = 1; part <= 20; ++part) {
+      const End end = advance(run, 50);
+      // None of these blows stops the run.
+      const bool good = end.stopped.empty() && end.finite;
+      CHECK_MESSAGE(good, std::string(blow.name), " ", end.stopped);
+      silent += !good;
+      largest = std::max(largest, end.drift);
       curve.x.push_back(50.0 * part);
-      curve.y.push_back(std::max(here.drift, 1e-16));
+      curve.y.push_back(std::max(end.drift, 1e-16));
     }
+    return largest;
+  };
+  for (const Blow& blow : blows) {
+    verify::Curve curve, coarse;
+    const double fine = drift(blow, 0.1, curve), rough = drift(blow, 0.25, coarse);
     plot.curves.push_back(curve);
-    const bool good = end.stopped.empty() ? end.finite : names_its_reason(end.stopped);
-    CHECK_MESSAGE(good, std::string(blow.name), " ", end.stopped);
-    silent += !good;
-    ran += end.stopped.empty();
-    INFO(blow.name, " ", end.stopped);
-    if (end.stopped.empty())
-      claim("V-STRESS-08", end.drift, blow.bound,
-            std::string(blow.name) + ": largest change of the ledger's residual within 50 steps, "
-                                     "over the energies");
+    claim("V-STRESS-08", fine, 5e-3,
+          std::string(blow.name) + ": largest change of the ledger's residual over the energies, "
+                                   "steps of a tenth of the critical one");
+    claim("V-STRESS-08", rough / fine, 3,
+          std::string(blow.name) + ": the same at a quarter, over it", verify::Bound::lower);
   }
   verify::show(plot);
-  REQUIRE(ran >= 6);
 
   // Random numbers put into a running model: positions, velocities, masses, a tool's motion.
   VERIFY_RANDOM(random, 7008);

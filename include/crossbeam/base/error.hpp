@@ -24,6 +24,10 @@ class InputError : public std::invalid_argument {
                               " is not admissible: " + admissible),
         field_(std::move(field)) {}
 
+  /// The same error with a place added to its text, for readers of files.
+  InputError(const InputError& error, const std::string& place)
+      : std::invalid_argument(error.what() + place), field_(error.field_) {}
+
   /// The offending field as the caller spells it, for instance "cell.warp.youngs_modulus".
   [[nodiscard]] const std::string& field() const noexcept { return field_; }
 
