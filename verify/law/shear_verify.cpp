@@ -120,7 +120,6 @@ TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its mod
   // the end, at the beginning or between. Scanned by differences of the traction.
   verify::Worst bounds;
   using crossbeam::PolynomialCurve;
-  const auto right = verify::fibre_angle<double>(90);
   for (const std::vector<double>& a : {std::vector<double>{1e-3, 2e-3}, {3e-3, -1e-3},
                                        {1e-3, 0.0, 5e-3, -4e-3}, verify::law_A}) {
     const PolynomialCurve<double> curve(a);
