@@ -158,13 +158,15 @@ struct LongYarn {
            y.second_moment_of_area / (l0 * l0 * l0)),
         kres(p.residual_compression_stiffness) {}
   struct Forces {
-    long double horizontal, vertical;
+    long double horizontal, vertical, slope;  ///< the last: of the vertical force with the height
   };
   [[nodiscard]] Forces at(long double u, long double w) const {
     const long double Lc = L + u, h = H + w, l = std::sqrt(Lc * Lc + h * h);
     const long double N = ka * (l - l0), t = (L * w - H * u) / l0;
     const long double compressed = u < 0 ? kres * u : 0;
-    return {N * Lc / l - kb * H / l0 * t + compressed, N * h / l + kb * L / l0 * t};
+    const long double c = Lc / l, s = h / l, c0 = L / l0;
+    return {N * c - kb * H / l0 * t + compressed, N * s + kb * c0 * t,
+            ka * s * s + N / l * c * c + kb * c0 * c0};
   }
 };
 
@@ -174,8 +176,8 @@ bool finite(const crossbeam::CellForces<T>& f) {
   return isfinite(f.F1) && isfinite(f.F2) && isfinite(f.w1) && isfinite(f.w2) && isfinite(f.q);
 }
 
-/// Largest violation of equilibrium, of the horizontal forces and of the contact law, as a share
-/// of the largest force the parts of the cell could take at these displacements.
+/// Largest violation of equilibrium, of the horizontal forces, of the contact law and of stability,
+/// as a share of the largest force the parts of the cell could take at these displacements.
 inline double imbalance(const crossbeam::CellParameters<double>& p, double u1, double u2,
                         const crossbeam::CellForces<double>& f, bool unilateral) {
   using Long = long double;
@@ -187,11 +189,18 @@ inline double imbalance(const crossbeam::CellParameters<double>& p, double u1, d
                       std::abs(Long(f.w2)) + warp.L + weft.L;
   const Long force = (std::max(warp.ka, weft.ka) + std::max(warp.kb, weft.kb) + warp.kres) * length;
   const Long gap = Long(f.w1) + f.w2 + f.q / k3;
+  // The branch on which the cell is stable: heights that are not negative, on the rising side.
+  const Long stiffness = force / length;
+  const Long unstable =
+      unilateral ? std::max({-a.slope / stiffness, -b.slope / stiffness,
+                             -(warp.H + f.w1) / length, -(weft.H + f.w2) / length})
+                 : Long(0);
   const Long contact = unilateral && !(f.q > 0) ? std::max(-gap, Long(0)) : std::abs(gap);
   return static_cast<double>(std::max({std::abs(a.vertical - f.q) / force,
                                        std::abs(b.vertical - f.q) / force,
                                        std::abs(a.horizontal - f.F1) / force,
-                                       std::abs(b.horizontal - f.F2) / force, contact / length}));
+                                       std::abs(b.horizontal - f.F2) / force, contact / length,
+                                       unstable}));
 }
 
 /// Roundings of a converged answer. Errors of a factor are what is looked for here; digits are the

@@ -61,6 +61,7 @@ template <class R>
 struct CellRange {
   R least_stiffness;  ///< of the yarns along their chords and of the contact
   R total_stiffness;  ///< these and bending added: not a number if one of them is none
+  R softest_yarn, stiffest_yarn;  ///< along their chords; the stiffest also in bending
   R least_length, largest_length;
 
   explicit CellRange(const CellParameters<R>& p) {
@@ -76,9 +77,11 @@ struct CellRange {
     };
     const R k1 = axial(p.warp, l1), k2 = axial(p.weft, l2);
     const R k3 = p.contact_modulus * p.contact_area / p.contact_length;
-    least_stiffness = minimum(k3, minimum(k1, k2));
-    total_stiffness = k1 + k2 + k3 + bending(p.warp, l1) + bending(p.weft, l2) +
-                      p.residual_compression_stiffness;
+    const R b1 = bending(p.warp, l1), b2 = bending(p.weft, l2);
+    softest_yarn = minimum(k1, k2);
+    stiffest_yarn = maximum(maximum(k1, k2), maximum(b1, b2));
+    least_stiffness = minimum(k3, softest_yarn);
+    total_stiffness = k1 + k2 + k3 + b1 + b2 + p.residual_compression_stiffness;
     least_length = minimum(p.warp.length, p.weft.length);
     largest_length = maximum(l1, l2);
   }
@@ -94,6 +97,12 @@ struct CellRange {
     return l * l >= low && minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low &&
            k >= low * L * L && L * L <= high && maximum(R(1), L) * K * K * K <= high &&
            K * L * L * L <= high;
+  }
+
+  /// Whether the softer yarn's force is more than the rounding of the stiffer one's, tag [C-12].
+  [[nodiscard]] bool comparable() const {
+    using std::sqrt;
+    return stiffest_yarn * sqrt(std::numeric_limits<R>::epsilon()) <= softest_yarn;
   }
 
   /// Elongations below it keep forces and energies finite, tag [C-12].
@@ -136,6 +145,11 @@ void validate(const CellParameters<R>& p, const std::string& prefix = "cell") {
                      "mm",
                      "stiffness^3, times a length or not, and stiffness length^3 must be numbers "
                      "with all their digits: choose other units");
+  using std::sqrt;
+  if (!range.comparable())
+    throw InputError(prefix + ": stiffest yarn, along or in bending, over the softest",
+                     detail::to_text(range.stiffest_yarn / range.softest_yarn), "-",
+                     "at most " + detail::to_text(1 / sqrt(std::numeric_limits<R>::epsilon())));
 }
 
 }  // namespace crossbeam
