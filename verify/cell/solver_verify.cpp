@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -144,6 +145,21 @@ TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine
 
   // The hardest states: a slack yarn at the very length where it becomes straight, with so little
   // bending that its height is a cube root of it.
+  // Yarns of very unequal lengths, on a grid of strains.
+  Parameters unequal = verify::table_1();
+  unequal.weft.length = 12;
+  unequal.warp.length = 1;
+  long of_unequal = 0;
+  for (const bool exchanged : {false, true}) {
+    if (exchanged) std::swap(unequal.warp, unequal.weft);
+    const Cell cell(unequal);
+    for (int i = -100; i <= 50; ++i)
+      for (int j = -100; j <= 50; ++j)
+        of_unequal += answer(cell, 2e-3 * i * cell.warp().L, 2e-3 * j * cell.weft().L).sweeps;
+  }
+  verify::claim("V-CELL-11", static_cast<double>(of_unequal) / (2 * 151 * 151), 3.5697,
+                "sweeps on average, yarns of 1 and 12 mm");
+
   int hardest = 0;
   long of_hardest = 0, hard_states = 0;
   for (double I = 1e-16; I < 2e-4; I *= 10) {

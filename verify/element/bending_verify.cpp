@@ -140,6 +140,17 @@ TEST_CASE("V-BEND-01 the second difference is exact for every quadratic field") 
       CHECK(ids(1.1e-8, along, across) == next);
     }
   }
+  // A node at the centre is no neighbour, of two at one place the first counts, and exactly on the
+  // limit of the rounding is on the line.
+  const auto chosen = [](const std::vector<StencilNeighbour>& ring) {
+    std::vector<int> out;
+    for (const auto& w : three_point_difference(0, ring)) out.push_back(w.id);
+    return out;
+  };
+  CHECK(chosen({{9, 0.0, 0.0}, {1, -1.0, 0.0}, {2, 1.0, 0.0}}) == std::vector{1, 0, 2});
+  CHECK(chosen({{1, -1.0, 0.0}, {2, 1.0, 0.0}, {3, -1.0, 0.0}, {4, 1.0, 0.0}}) ==
+        std::vector{1, 0, 2});
+  CHECK(chosen({{1, -0.5, 1e-9}, {2, 1.0, 0.0}}) == std::vector{1, 0, 2});
 
   // [B-3]: of all exact weights those with the least sum of w^2/v, v = (n^2 + 1e-3)^-2 in units of
   // the ring's radius; refused where the sum of their sizes exceeds the limit. By the normal

@@ -166,6 +166,29 @@ TEST_CASE(
       }
     }
   };
+  // Far from the origin nothing is lost that the coordinates have: these are exact.
+  const auto far_away = [&](auto element) {
+    using Element = decltype(element);
+    const double shape[4][2] = {{0, 0}, {3.25, 0.5}, {3, 2.75}, {-0.25, 3}};
+    std::array<Vec3<double>, 4> near, far;
+    for (int a = 0; a < 4; ++a) {
+      near[a] = {shape[a][0], shape[a][1], 0};
+      far[a] = {0x1p24 + shape[a][0], shape[a][1] - 0x1p25, 0x1p22};
+    }
+    const FibreDirections<double> directions{vec3(direction(warp_angle)),
+                                             vec3(direction(warp_angle + fibre_angle))};
+    const auto here = Element::coefficients(near, directions);
+    const auto there = Element::coefficients(far, directions);
+    for (int p = 0; p < Element::points; ++p) {
+      weights.see(std::abs(there[p].weight / here[p].weight - 1), "far away", p);
+      for (int k = 0; k < Element::vectors; ++k)
+        fibres.see(std::abs(there[p].t1[k] - here[p].t1[k]) +
+                       std::abs(there[p].t2[k] - here[p].t2[k]),
+                   "far away", p);
+    }
+  };
+  far_away(Quadrilateral<1>{});
+  far_away(Quadrilateral<4>{});
   at_points(Quadrilateral<1>{});
   at_points(Quadrilateral<4>{});
   // Coordinates of 20 mm round to 4e-15 mm, over edges of 3 mm and flat corners.

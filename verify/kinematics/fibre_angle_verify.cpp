@@ -126,6 +126,7 @@ TEST_CASE("V-KIN-04 the shear angle is signed, blind to stretch and turn, and ex
   }
   small.claim("V-KIN-04", 5e-16, "relative error of angles from 1e-15 rad, perpendicular yarns");
   CHECK(crossbeam::shear_angle(0.0, right) == 0.0);
+  CHECK_FALSE(std::signbit(crossbeam::arcsine(0.0)));
   // The half circle of a number type that std does not know.
   CHECK(std::abs(crossbeam::detail::half_pi<OwnNumber>().value -
                  std::numbers::pi_v<long double> / 2) < 1e-18L);

@@ -245,6 +245,8 @@ def skip_compile_time(tokens):
                 i = end
         elif token.live and token.text == "constexpr" and tokens[i - 1].text == "if":
             skip(tokens, i + 1, matching(tokens, i + 1, "(", ")"))
+        elif token.live and token.text == "decltype":
+            skip(tokens, i + 1, matching(tokens, i + 1, "(", ")"))
         elif token.live and token.text == "requires" and tokens[i + 1].text == "{":
             skip(tokens, i, matching(tokens, i + 1, "{", "}"))
         i += 1
