@@ -57,15 +57,16 @@ TEST_CASE("V-CELL-31 the complex step through the iteration gives forces and tan
         worst.see(error, s.taut ? "taut" : "slack", "u =", s.u1, s.u2, "sweeps", at.sweeps);
       };
       const ByComplexStep d(cell, s.u1, s.u2, at.sweeps + 2);
-      see(forces, std::max(std::abs(d.F[0] - at.forces.F1), std::abs(d.F[1] - at.forces.F2)) /
-                      (ka * u));
+      see(forces,
+          std::max(std::abs(d.F[0] - at.forces.F1), std::abs(d.F[1] - at.forces.F2)) / (ka * u));
       see(tangents, d.error_of_tangent(at.tangent) / ka);
       if (at.sweeps < 2) continue;
       // The solver's last sweep only confirms: one more leaves no doubt in the derivatives either.
       see(one_more,
           ByComplexStep(cell, s.u1, s.u2, at.sweeps + 1).error_of_tangent(at.tangent) / ka);
-      one_less = std::max(one_less, ByComplexStep(cell, s.u1, s.u2, at.sweeps - 1)
-                                            .error_of_tangent(at.tangent) / ka);
+      one_less = std::max(
+          one_less,
+          ByComplexStep(cell, s.u1, s.u2, at.sweeps - 1).error_of_tangent(at.tangent) / ka);
     }
   // The same formulas in another arithmetic: some roundings of the terms.
   forces.claim("V-CELL-31", 1e-14, "dU/du against F, relative to EA/l0 u");
@@ -82,17 +83,23 @@ TEST_CASE("V-CELL-31 the complex step through the iteration gives forces and tan
   for (int sweeps = 1; sweeps <= 6; ++sweeps) {
     const auto s = cell.solve(0.025, 0.0, SolverControl::fixed(sweeps));
     const double F = std::abs(s.forces.F1 - at.forces.F1) / at.forces.F1;
-    const double K = ByComplexStep(cell, 0.025, 0, sweeps).error_of_tangent(at.tangent) /
-                     at.tangent.K11;
+    const double K =
+        ByComplexStep(cell, 0.025, 0, sweeps).error_of_tangent(at.tangent) / at.tangent.K11;
     for (auto [curve, y] : {std::pair{&value, F}, std::pair{&slope, K}}) {
       curve->x.push_back(sweeps);
       curve->y.push_back(std::max(y, 1e-17));
     }
   }
-  verify::show(verify::Plot{"V-CELL-31", "Newton seen through the complex step", "sweeps",
-                            "relative error [-]", false, true, {value, slope},
-                            "Every sweep squares both errors: the iteration itself is differentiated "
-                            "and converges to the tangent. (1e-17 stands for zero.)"});
+  verify::show(
+      verify::Plot{"V-CELL-31",
+                   "Newton seen through the complex step",
+                   "sweeps",
+                   "relative error [-]",
+                   false,
+                   true,
+                   {value, slope},
+                   "Every sweep squares both errors: the iteration itself is differentiated "
+                   "and converges to the tangent. (1e-17 stands for zero.)"});
 }
 
 TEST_SUITE_END();

@@ -52,9 +52,9 @@ TEST_CASE("V-CELL-29 the templates in fifty digits: what double loses, and the r
     const Fifty ka = maximum(wide.warp().ka, wide.weft().ka);
     const Fifty u = maximum(absolute(u1), absolute(u2));
     const auto where = [&](verify::Worst& worst, double error, const char* what) {
-      worst.see(error, what, "sample", sample, "u =", u1, u2, "I1 =",
-                p.warp.second_moment_of_area, "E2 =", p.weft.youngs_modulus, "L3 =",
-                p.contact_length, "chi =", p.warp_height_fraction);
+      worst.see(error, what, "sample", sample, "u =", u1, u2, "I1 =", p.warp.second_moment_of_area,
+                "E2 =", p.weft.youngs_modulus, "L3 =", p.contact_length,
+                "chi =", p.warp_height_fraction);
     };
     where(heights, roundings(a.forces.w1, b.forces.w1, L3), "w1");
     where(heights, roundings(a.forces.w2, b.forces.w2, L3), "w2");
@@ -67,7 +67,8 @@ TEST_CASE("V-CELL-29 the templates in fifty digits: what double loses, and the r
     where(tangents, roundings(a.tangent.K22, b.tangent.K22, ka), "K22");
 
     // Relative to the number itself; what is zero but for fifty digits' rounding has no digits.
-    const auto count = [](verify::Digits& digits, double x, const Fifty& exact, const Fifty& scale) {
+    const auto count = [](verify::Digits& digits, double x, const Fifty& exact,
+                          const Fifty& scale) {
       if (absolute(exact) > Fifty(1e-40) * scale)
         digits.see(static_cast<double>(absolute((Fifty(x) - exact) / exact)));
     };
@@ -92,12 +93,17 @@ TEST_CASE("V-CELL-29 the templates in fifty digits: what double loses, and the r
   energies.claim("V-CELL-29", 8, "energy, in roundings of EA/l0 u^2");
   tangents.claim("V-CELL-29", 200, "tangent, in roundings of EA/l0");
   verify::show(verify::Plot{
-      "V-CELL-29", "Right decimal digits in double", "right digits of the number itself", "results",
-      false, false,
+      "V-CELL-29",
+      "Right decimal digits in double",
+      "right digits of the number itself",
+      "results",
+      false,
+      false,
       {{"force of a yarn", force_digits.at(), force_digits.count()},
        {"energy", energy_digits.at(), energy_digits.count()},
        {"tangent", tangent_digits.at(), tangent_digits.count()}},
-      "4000 random states in double against fifty digits, half-digit bins: the energy keeps all its "
+      "4000 random states in double against fifty digits, half-digit bins: the energy keeps all "
+      "its "
       "digits; forces and tangents below 14 digits are those of slack yarns, 1e-3 to 1e-9 of the "
       "terms that cancel in them."});
 }
@@ -110,7 +116,8 @@ TEST_CASE("V-CELL-29 fifty digits reproduce the 42 of the reference table") {
     const verify::Json& row = state.at("EU");
     const auto value = [&](const char* field) { return verify::number<Fifty>(row.at(field)); };
     const WideCell cell(verify::reference_parameters<Fifty>(state));
-    const auto u1 = verify::number<Fifty>(state.at("u1")), u2 = verify::number<Fifty>(state.at("u2"));
+    const auto u1 = verify::number<Fifty>(state.at("u1")),
+               u2 = verify::number<Fifty>(state.at("u2"));
     const auto s = verify::answer(cell, u1, u2);
     REQUIRE(verify::converged(s));
     const Fifty L3 = cell.parameters().contact_length;

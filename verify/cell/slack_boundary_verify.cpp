@@ -40,11 +40,11 @@ struct Boundary {
                              const crossbeam::CellTangent<R>& K) const {
     const R a = R(step) * R(d1) * cell.warp().L, b = R(step) * R(d2) * cell.weft().L;
     const auto moved = answer(cell, u1 + a, u2 + b).forces;
-    const R size = R(std::abs(step)) * std::max(cell.warp().ka * cell.warp().L,
-                                                cell.weft().ka * cell.weft().L);
-    return static_cast<double>(
-        std::max(std::abs(moved.F1 - at.F1 - (K.K11 * a + K.K12 * b)),
-                 std::abs(moved.F2 - at.F2 - (K.K12 * a + K.K22 * b))) / size);
+    const R size = R(std::abs(step)) *
+                   std::max(cell.warp().ka * cell.warp().L, cell.weft().ka * cell.weft().L);
+    return static_cast<double>(std::max(std::abs(moved.F1 - at.F1 - (K.K11 * a + K.K12 * b)),
+                                        std::abs(moved.F2 - at.F2 - (K.K12 * a + K.K22 * b))) /
+                               size);
   }
 };
 
@@ -107,7 +107,8 @@ TEST_CASE("V-CELL-32 differences approach the tangent of their own side of the s
     }
   }
   // Over a decade the next term of the series is some hundredth of the first.
-  order.claim("V-CELL-32", 0.02, "|order - 1| of one-sided differences against their side's tangent");
+  order.claim("V-CELL-32", 0.02,
+              "|order - 1| of one-sided differences against their side's tangent");
   // The V of truncation and rounding has its tip at a step of the size of eps^(1/2).
   best.claim("V-CELL-32", 1e-6, "least error over all steps, relative to EA/l0");
   verify::claim("V-CELL-32", least_rise, 10, "error at steps of 1e-13 over the least one",
@@ -116,12 +117,12 @@ TEST_CASE("V-CELL-32 differences approach the tangent of their own side of the s
                 "distance of the differences from the other side's tangent, relative to EA/l0",
                 verify::Bound::lower);
 
-  // At the origin the closed forms of both sides are known by hand. There F = 0: no digits are lost.
+  // At the origin both sides have closed forms, and F = 0: no digits are lost.
   const Cell cell(verify::table_1());
   const auto& y = cell.warp();
   const double c = y.c0 * y.c0, s = y.s0 * y.s0, k3 = cell.contact_stiffness();
-  const double sum = y.ka * c + y.kb * s -
-                     (y.ka - y.kb) * (y.ka - y.kb) * c * s / (y.ka * s + y.kb * c + 2 * k3);
+  const double sum =
+      y.ka * c + y.kb * s - (y.ka - y.kb) * (y.ka - y.kb) * c * s / (y.ka * s + y.kb * c + 2 * k3);
   const double difference = y.ka * y.kb / (y.ka * s + y.kb * c);
   const double step = 1e-12 * y.L;
   const double ahead = answer(cell, step, 0).forces.F1 / step;
@@ -132,12 +133,13 @@ TEST_CASE("V-CELL-32 differences approach the tangent of their own side of the s
                 "origin, stretched: 6.776 kN/mm in closed form, relative");
   verify::claim("V-CELL-32", std::abs(behind / difference - 1), 1e-9,
                 "origin, shortened: 0.0262 kN/mm in closed form, relative");
-  verify::claim("V-CELL-32", std::abs(ahead / behind - 258.936), 1e-3, "ratio of the jump, 258.936");
+  verify::claim("V-CELL-32", std::abs(ahead / behind - 258.936), 1e-3,
+                "ratio of the jump, 258.936");
 
   const double u2 = 0.01 * y.L;
   const Boundary<double> b(verify::table_1(), closing_elongation(verify::table_1(), u2), u2);
-  verify::Curve on_taut{"taut side, taut tangent", {}, {}}, on_slack{"slack side, slack tangent", {}, {}},
-      wrong{"taut side, slack tangent", {}, {}};
+  verify::Curve on_taut{"taut side, taut tangent", {}, {}},
+      on_slack{"slack side, slack tangent", {}, {}}, wrong{"taut side, slack tangent", {}, {}};
   for (double h = 1e-2; h > 1e-14; h /= 2) {
     const auto add = [&](verify::Curve& curve, double side, const auto& K) {
       curve.x.push_back(h);
@@ -147,11 +149,16 @@ TEST_CASE("V-CELL-32 differences approach the tangent of their own side of the s
     add(on_slack, -1, b.slack);
     add(wrong, 1, b.slack);
   }
-  verify::show(verify::Plot{
-      "V-CELL-32", "One-sided differences at the slack boundary, weft +1 %", "step [strain]",
-      "error of the difference quotient over EA/l0 [-]", true, true, {on_taut, on_slack, wrong},
-      "Each side has its V, truncation from the right and rounding from the left; against the other "
-      "side's tangent no step helps."});
+  verify::show(verify::Plot{"V-CELL-32",
+                            "One-sided differences at the slack boundary, weft +1 %",
+                            "step [strain]",
+                            "error of the difference quotient over EA/l0 [-]",
+                            true,
+                            true,
+                            {on_taut, on_slack, wrong},
+                            "Each side has its V, truncation from the right and rounding from the "
+                            "left; against the other "
+                            "side's tangent no step helps."});
 }
 
 TEST_SUITE_END();

@@ -51,7 +51,8 @@ R smallest_eigenvalue(const crossbeam::CellTangent<R>& K) {
 
 /// Height at which a yarn is as long as unstressed; zero where even the straight one is stretched.
 long double slack_height(const crossbeam::YarnConstants<double>& y, double u) {
-  const long double a = static_cast<long double>(y.H) * y.H - u * (2 * static_cast<long double>(y.L) + u);
+  const long double a =
+      static_cast<long double>(y.H) * y.H - u * (2 * static_cast<long double>(y.L) + u);
   return std::sqrt(std::max(a, 0.0L));
 }
 
@@ -88,9 +89,10 @@ void scan_state(Scan& scan, const Cell& cell, double u1, double u2, const Answer
   const double u = std::max(std::abs(u1), std::abs(u2));
   const bool plain = p.warp.second_moment_of_area == 0 && p.weft.second_moment_of_area == 0;
   const auto see = [&](verify::Worst& worst, double error) {
-    worst.see(error, "u =", u1, u2, "E2 =", p.weft.youngs_modulus, "E3 =", p.contact_modulus, "I =",
-              p.warp.second_moment_of_area, p.weft.second_moment_of_area, "L3 =", p.contact_length,
-              "chi =", p.warp_height_fraction, "L =", p.warp.length, p.weft.length);
+    worst.see(error, "u =", u1, u2, "E2 =", p.weft.youngs_modulus, "E3 =", p.contact_modulus,
+              "I =", p.warp.second_moment_of_area, p.weft.second_moment_of_area,
+              "L3 =", p.contact_length, "chi =", p.warp_height_fraction, "L =", p.warp.length,
+              p.weft.length);
   };
 
   // T1: an equilibrium, with heights h >= 0 on the branches where g increases.
@@ -159,8 +161,8 @@ void scan_chord(Scan& scan, const Cell& cell, verify::Random& random) {
   using Gradient = Eigen::Matrix<double, 3, 2>;
   const auto gradient = [&] {
     Gradient F = random.rotation().leftCols<2>();
-    for (int i = 0; i < 2; ++i) F.col(i) = (F.col(i) + random.vector(0.3)).normalized() *
-                                           random.uniform(0.8, 1.1);
+    for (int i = 0; i < 2; ++i)
+      F.col(i) = (F.col(i) + random.vector(0.3)).normalized() * random.uniform(0.8, 1.1);
     return F;
   };
   const Gradient F = gradient(), G = random.uniform(0, 1) < 0.5 ? gradient() : [&] {
@@ -169,8 +171,8 @@ void scan_chord(Scan& scan, const Cell& cell, verify::Random& random) {
     return near;
   }();
   const auto energy = [&](const Gradient& A) {
-    const Answer a = answer(cell, cell.warp().L * (A.col(0).norm() - 1),
-                            cell.weft().L * (A.col(1).norm() - 1));
+    const Answer a =
+        answer(cell, cell.warp().L * (A.col(0).norm() - 1), cell.weft().L * (A.col(1).norm() - 1));
     scan.one.not_converged += !verify::converged(a);
     return a.energy;
   };
@@ -223,8 +225,9 @@ void claim_theorems(const Scan& scan) {
                            " states without bending");
   count(t2.forces, "T2: a crimped yarn of an open contact that carries a force");
   // A rounding of l0 and one of L + u.
-  t2.straight.claim("V-CELL-30", 1e-15, "T2: force of a straight yarn against EA (Lc - l0)/l0, "
-                                        "relative to EA/l0 L");
+  t2.straight.claim("V-CELL-30", 1e-15,
+                    "T2: force of a straight yarn against EA (Lc - l0)/l0, "
+                    "relative to EA/l0 L");
 
   // The same formulas from the same heights (V-CELL-05): some roundings.
   scan.three.gradient.claim("V-CELL-30", 4e-15, "T3: F against dU/du, relative to EA/l0 u");
@@ -234,10 +237,12 @@ void claim_theorems(const Scan& scan) {
   REQUIRE(t4.taut_chords > t4.chords / 20);
   count(t4.compressed, "T4: yarns in compression, I = 0");
   // A rounding of the energy at the middle.
-  t4.convexity.claim("V-CELL-30", 1e-16, "T4: energy above its chord between two 3x2 gradients, of " +
-                                             number(t4.chords) + ", relative to EA/l0 L^2");
+  t4.convexity.claim("V-CELL-30", 1e-16,
+                     "T4: energy above its chord between two 3x2 gradients, of " +
+                         number(t4.chords) + ", relative to EA/l0 L^2");
   // Round-off of long double, times EA/l0 over the vertical stiffness of a yarn all but straight.
-  t4.eigenvalue.claim("V-CELL-30", 1e-15, "T4: negative eigenvalue of the tangent, I = 0, over EA/l0");
+  t4.eigenvalue.claim("V-CELL-30", 1e-15,
+                      "T4: negative eigenvalue of the tangent, I = 0, over EA/l0");
 
   const auto& t5 = scan.five;
   REQUIRE(t5.taut > t1.states / 10);
@@ -247,8 +252,10 @@ void claim_theorems(const Scan& scan) {
                 "T5: least eigenvalue found among them, over EA/l0", verify::Bound::lower);
   // Negative result: stout beams with a pressed contact and a yarn in compression can be unstable.
   const double share = static_cast<double>(t5.pressed_indefinite) / static_cast<double>(t5.pressed);
-  verify::claim("V-CELL-30", share, 1e-3, "T5: share of unstable states where the contact presses "
-                "but a yarn is compressed: tension is needed", verify::Bound::lower);
+  verify::claim("V-CELL-30", share, 1e-3,
+                "T5: share of unstable states where the contact presses "
+                "but a yarn is compressed: tension is needed",
+                verify::Bound::lower);
 
   std::vector<double> sweeps, residual, counted;
   for (int k = 0; k <= t1.most; ++k) {
@@ -258,14 +265,25 @@ void claim_theorems(const Scan& scan) {
     residual.push_back(t1.residual_at[i]);
   }
   verify::show(verify::Plot{
-      "V-CELL-30", "Newton sweeps to convergence," + of_states, "sweeps", "states", false, true,
+      "V-CELL-30",
+      "Newton sweeps to convergence," + of_states,
+      "sweeps",
+      "states",
+      false,
+      true,
       {{"states", sweeps, counted}},
       "Random fabrics: none fails, most states need three to five sweeps; zero means slack without "
-      "bending.", true});
+      "bending.",
+      true});
   verify::show(verify::Plot{
-      "V-CELL-30", "Worst violation of the equilibrium," + of_states, "sweeps",
-      "violation relative to EA/l0 L3 [-]", false, true,
-      {{"worst of all states with that many sweeps", sweeps, residual, verify::Curve::Style::points}},
+      "V-CELL-30",
+      "Worst violation of the equilibrium," + of_states,
+      "sweeps",
+      "violation relative to EA/l0 L3 [-]",
+      false,
+      true,
+      {{"worst of all states with that many sweeps", sweeps, residual,
+        verify::Curve::Style::points}},
       "Twenty roundings at most, however many sweeps a state took: nothing is left unconverged."});
 }
 

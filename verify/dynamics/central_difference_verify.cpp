@@ -457,7 +457,7 @@ TEST_CASE("V-DYN-06 runs of the same model agree in every bit, also side by side
     int differ = 0;
     for (const auto& e : ends) differ += different(alone, e);
     claim("V-DYN-06", differ, 0,
-          "nodes that differ in any bit, runs side by side in " + std::to_string(count) + " threads");
+          "nodes that differ in any bit, side by side in " + std::to_string(count) + " threads");
   }
 }
 

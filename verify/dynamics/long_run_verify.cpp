@@ -81,8 +81,12 @@ void claim_no_drift(const TautSheet& sheet, long steps, const std::string& name)
   claim("V-DYN-08", std::abs(drift.over_the_run) / whole.amplitude(), 0.01,
         "drift over " + name + " steps, over the amplitude of the oscillation");
   verify::show(verify::Plot{
-      "V-DYN-08", "Energy error of a conservative run of " + name + " steps", "time [ms]",
-      "total energy less that at the start, over the first kinetic energy [-]", false, false,
+      "V-DYN-08",
+      "Energy error of a conservative run of " + name + " steps",
+      "time [ms]",
+      "total energy less that at the start, over the first kinetic energy [-]",
+      false,
+      false,
       {{"largest of a hundredth of the run", drift.time, drift.most},
        {"mean", drift.time, drift.mean},
        {"smallest", drift.time, drift.least}},

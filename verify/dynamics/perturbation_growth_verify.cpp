@@ -46,8 +46,8 @@ struct SphereDrape {
     run.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
         mesh, law, areal_mass, MembraneOptions{1e-4, 0.06}));
     if (bending > 0)
-      run.add(std::make_unique<BendingSweep<T>>(mesh, BendingStiffness{bending, bending},
-                                                areal_mass));
+      run.add(
+          std::make_unique<BendingSweep<T>>(mesh, BendingStiffness{bending, bending}, areal_mass));
     run.add(tool<T>(Sphere<double>({side / 2, side / 2, -radius}, radius),
                     ToolMotion::prescribed(travel), ContactParameters{}, mesh.node_count));
     run.start(0.9 * run.critical_step());
@@ -97,11 +97,17 @@ void claim_growth(int n, const std::string& mesh_name) {
   for (int k = 0; k <= SphereDrape::rows; ++k)
     stroke.push_back(SphereDrape::stroke * k / SphereDrape::rows);
   verify::show(verify::Plot{
-      "V-DYN-09", "Growth of a perturbation of 1e-9 mm, " + mesh_name, "stroke [mm]",
-      "largest difference of positions over the perturbation [-]", false, true,
+      "V-DYN-09",
+      "Growth of a perturbation of 1e-9 mm, " + mesh_name,
+      "stroke [mm]",
+      "largest difference of positions over the perturbation [-]",
+      false,
+      true,
       {{"without bending", stroke, bare},
        {"with bending", stroke, stiff},
-       {"what a stable sheet can give back", {0, SphereDrape::stroke}, {passive, passive},
+       {"what a stable sheet can give back",
+        {0, SphereDrape::stroke},
+        {passive, passive},
         verify::Curve::Style::guide}},
       "A sphere rises into a sheet: with the yarns' bending stiffness the difference stays what it "
       "was; without it every wrinkle multiplies it, and the final pattern is one of many."});

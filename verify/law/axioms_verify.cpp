@@ -219,9 +219,10 @@ TEST_CASE("V-LAW-22 with a shear layer waves soften by the compressive stress al
       if (name != "none") REQUIRE(w.softened < -1e-5);
       (quadratic ? constant : by_angle).see(-w.below, name, degrees, "softened", w.softened);
     });
-  // A quadratic energy in the strain, and yarns without bending, have a positive tangent dS/dE; what
-  // is left is n . S n, the wave's share of the stress. Round-off as V-LAW-16.
-  constant.claim("V-LAW-22", 1e-12, "eigenvalue below the least principal stress [kN/mm], constant G");
+  // A quadratic energy in the strain, and yarns without bending, have a positive tangent dS/dE; left
+  // is n . S n, the wave's share of the stress. Round-off as V-LAW-16.
+  constant.claim("V-LAW-22", 1e-12,
+                 "eigenvalue below the least principal stress [kN/mm], constant modulus");
   // An energy in the angle adds its traction, 1e-4 kN/mm, times the second derivative of the angle,
   // which has no sign ([L-5]): a measured property, pinned.
   by_angle.claim("V-LAW-22", 2e-5, "the same, energies in the fibre angle [kN/mm]");

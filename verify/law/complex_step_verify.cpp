@@ -48,14 +48,16 @@ TEST_CASE("V-LAW-20 the complex step gives S from the energy and dS/dE from S") 
           for (int j = 0; j < 3; ++j) {
             // Column j of (E11, E22, 2 E12).
             Matrix2<ComplexStep> z = E.cast<ComplexStep>();
-            const ComplexStep i(std::complex<double>(0, j < 2 ? ComplexStep::h : ComplexStep::h / 2));
+            const ComplexStep i(
+                std::complex<double>(0, j < 2 ? ComplexStep::h : ComplexStep::h / 2));
             z(j == 1, j != 0) += i;
             if (j == 2) z(1, 0) += i;
             const auto by_step = crossbeam::membrane_response(fixed, z);
             const double S[3] = {r.S(0, 0), r.S(1, 1), r.S(0, 1)};
             const ComplexStep by[3] = {by_step.S(0, 0), by_step.S(1, 1), by_step.S(0, 1)};
-            stress.see(std::abs(by_step.energy.derivative() - S[j]) / (0.03 * law.stiffness_bound()),
-                       name, degrees, bending, j);
+            stress.see(
+                std::abs(by_step.energy.derivative() - S[j]) / (0.03 * law.stiffness_bound()), name,
+                degrees, bending, j);
             for (int row = 0; row < 3; ++row)
               tangent.see(std::abs(by[row].derivative() - r.dS_dE(row, j)) / law.stiffness_bound(),
                           name, degrees, bending, row, j);

@@ -14,8 +14,8 @@
 
 namespace verify {
 
-/// A complex number that is ordered by its real part, as a kernel's comparisons expect. To the kernel
-/// it is a plain scalar: iterations run in it, and nothing is made of derivatives ([C-7]).
+/// A complex number that is ordered by its real part, as a kernel's comparisons expect. It is a plain
+/// scalar to the kernel: iterations run in it, and nothing is made of derivatives ([C-7]).
 struct ComplexStep {
   static constexpr double h = 1e-30;
   std::complex<double> z{};
@@ -23,8 +23,7 @@ struct ComplexStep {
   ComplexStep() = default;
   ComplexStep(const std::complex<double>& value) : z(value) {}
   template <class A>
-    requires std::is_arithmetic_v<A>
-  ComplexStep(A value) : z(static_cast<double>(value)) {}
+  requires std::is_arithmetic_v<A> ComplexStep(A value) : z(static_cast<double>(value)) {}
 
   /// The variable that is differentiated by.
   static ComplexStep variable(double x) { return std::complex<double>(x, h); }
@@ -41,7 +40,9 @@ struct ComplexStep {
   ComplexStep& operator*=(const ComplexStep& b) { return *this = *this * b; }
   ComplexStep& operator/=(const ComplexStep& b) { return *this = *this / b; }
 
-  friend bool operator<(const ComplexStep& a, const ComplexStep& b) { return a.value() < b.value(); }
+  friend bool operator<(const ComplexStep& a, const ComplexStep& b) {
+    return a.value() < b.value();
+  }
   friend bool operator>(const ComplexStep& a, const ComplexStep& b) { return b < a; }
   friend bool operator<=(const ComplexStep& a, const ComplexStep& b) { return !(b < a); }
   friend bool operator>=(const ComplexStep& a, const ComplexStep& b) { return !(a < b); }
@@ -65,6 +66,13 @@ struct Eigen::NumTraits<verify::ComplexStep> : Eigen::NumTraits<double> {
   using Real = verify::ComplexStep;
   using NonInteger = verify::ComplexStep;
   using Nested = verify::ComplexStep;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 1,
-         AddCost = 2, MulCost = 4 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1,
+    AddCost = 2,
+    MulCost = 4
+  };
 };
