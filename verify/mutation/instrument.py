@@ -7,6 +7,7 @@ The copy has the same lines. The list of mutants goes to <output folder>/mutants
 """
 
 import argparse
+import collections
 import json
 import pathlib
 import re
@@ -657,8 +658,14 @@ def instrument(include, output, dropped=(), kernels=KERNELS):
         write_if_changed(output / "include" / name, text)
     for stale in set((output / "include").rglob("*.hpp")) - wanted:
         stale.unlink()
+    seen = collections.Counter()
     for number, mutant in enumerate(mutants, 1):
         mutant["id"] = number
+        # A name that outlives line numbers; the second of its kind on equal lines has a #2.
+        name = (mutant["file"], mutant["text"], mutant["before"], mutant["after"])
+        seen[name] += 1
+        mutant["change"] = f"{mutant['before']} => {mutant['after']}" + (
+            f" #{seen[name]}" if seen[name] > 1 else "")
     write_if_changed(output / "mutants.json", json.dumps(mutants, indent=1) + "\n")
     return mutants
 

@@ -102,13 +102,9 @@ def portions(tests, seconds):
 
 def judge(program, mutant, seconds, reached_by):
     """killed | survived | not applicable, and by what or why."""
-    begin = time.monotonic()
     tests = reached_by.get(mutant["site"], set())
     if not tests:
-        return "survived", "not reached by any test", 0
-    def verdict(*words):
-        return *words, time.monotonic() - begin
-
+        return "survived", "not reached by any test"
     differed = False
     for portion in portions(tests, seconds):
         limit = 0.5 + 5 * sum(seconds[t] for t in portion)
@@ -118,14 +114,13 @@ def judge(program, mutant, seconds, reached_by):
             status = subprocess.run(command, env=environment, stdout=subprocess.DEVNULL,
                                     stderr=subprocess.DEVNULL, timeout=60 + 20 * limit).returncode
         except subprocess.TimeoutExpired:
-            return verdict("killed", "hangs")
+            return "killed", "hangs"
         if status == 77:
-            return verdict("not applicable", "no such operation for these types")
+            return "not applicable", "no such operation for these types"
         if status not in (0, 70, 71):
-            return verdict("killed",
-                           "hangs" if status == -26 else "crashes" if status < 0 else "test")
+            return "killed", "hangs" if status == -26 else "crashes" if status < 0 else "test"
         differed = differed or status == 0
-    return verdict("survived", "" if differed else "never changed a value")
+    return "survived", "" if differed else "never changed a value"
 
 
 def read_explanations(path):
@@ -143,7 +138,7 @@ def read_explanations(path):
 
 
 def key_of(mutant):
-    return mutant["file"], mutant["text"], f"{mutant['before']} => {mutant['after']}"
+    return mutant["file"], mutant["text"], mutant["change"]
 
 
 def show(mutant):
@@ -155,7 +150,7 @@ def summary(mutants, results, explanations, seconds, dropped):
     report = {"score": 0.0, "mutants": len(mutants), "killed": 0, "not_applicable": 0,
               "survivors": [], "per_file": {}, "by_kind": {}, "killed_by": {},
               "lines_without_mutants": dropped}
-    for mutant, (verdict, how, _) in zip(mutants, results):
+    for mutant, (verdict, how) in zip(mutants, results):
         groups = (report["per_file"].setdefault(mutant["file"], {}),
                   report["by_kind"].setdefault(mutant["kind"], {}))
         for group in groups:
@@ -168,7 +163,8 @@ def summary(mutants, results, explanations, seconds, dropped):
             group[field] += 1
         if verdict == "survived":
             report["survivors"].append(
-                {k: mutant[k] for k in ("id", "file", "line", "kind", "before", "after", "text")} |
+                {k: mutant[k] for k in ("id", "file", "line", "kind", "before", "after", "text",
+                                        "change")} |
                 {"note": how, "explanation": explanations.get(key_of(mutant), "")})
         else:
             report[field] += 1
@@ -233,9 +229,6 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         results = list(pool.map(lambda m: judge(program, m, seconds, reached_by), mutants))
 
-    if os.environ.get("MUTATION_TIMES"):
-        pathlib.Path(os.environ["MUTATION_TIMES"]).write_text("".join(
-            f"{r[2]:.3f} {r[0]} {r[1]} {show(m)}\n" for m, r in zip(mutants, results)))
     explanations = read_explanations(arguments.survivors)
     report = summary(mutants, results, explanations, time.monotonic() - begin, dropped)
     report["seconds_of_building"] = round(built, 1)
