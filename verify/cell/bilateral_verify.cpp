@@ -19,6 +19,7 @@ using verify::Answer;
 using verify::answer;
 using verify::converged;
 using Bilateral = crossbeam::BilateralCell<double>;
+using Pack = crossbeam::Pack<double, 2>;
 
 /// Newton on the heights from a start of one's own, which finds the minima that the cell's start at
 /// w = 0 does not reach. True when it ends at a minimum of the energy.
@@ -110,7 +111,7 @@ TEST_CASE("V-CELL-18 the bilateral contact is unstable in compression and not un
   // The status says what the eigenvalues of the energy's second derivative in the heights say, and
   // that an iteration has not ended; for any fabric.
   VERIFY_RANDOM(random, 2018);
-  int at_minimum = 0, elsewhere = 0, open_ended = 0;
+  int at_minimum = 0, elsewhere = 0, maxima = 0, open_ended = 0;
   long wrong = 0;
   for (int sample = 0; sample < 20000; ++sample) {
     const auto fabric = verify::random_fabric(random);
@@ -134,18 +135,26 @@ TEST_CASE("V-CELL-18 the bilateral contact is unstable in compression and not un
     if (std::abs(least) < 1e-9 * (std::abs(a) + std::abs(b))) continue;
     (least > 0 ? at_minimum : elsewhere)++;
     wrong += (s.status == CellStatus::converged) != (least > 0);
+    // A maximum, where the determinant alone would be content, beside a minimum in the other lane.
+    if (a < 0 && a * b > k3 * k3) {
+      ++maxima;
+      Pack u1s(u1), u2s(u2);
+      u1s.set(1, 0.01 * fabric.warp.length);
+      u2s.set(1, 0.01 * fabric.weft.length);
+      wrong += any.solve(u1s, u2s).status == CellStatus::converged;
+    }
   }
   CAPTURE(at_minimum);
   CAPTURE(elsewhere);
   REQUIRE(at_minimum > 1000);
   REQUIRE(elsewhere > 1000);
+  REQUIRE(maxima > 10);
   REQUIRE(open_ended > 10);
   verify::claim("V-CELL-18", static_cast<double>(wrong), 0,
                 "random states whose status is not that of the least eigenvalue");
 
   // One lane is enough.
-  using P = crossbeam::Pack<double, 2>;
-  P u1(0.01 * 2.5), u2(0.01 * 2.5);
+  Pack u1(0.01 * 2.5), u2(0.01 * 2.5);
   REQUIRE(cell.solve(u1, u2).status == CellStatus::converged);
   u1.set(1, -0.04 * 2.5);
   u2.set(1, -0.04 * 2.5);
