@@ -1,7 +1,7 @@
 # Every C++ block in README.md and docs/ is a region of a compiled example, word for word. Above the
 # block stands
 #   <!-- snippet: docs/examples/gauss_point.cpp law -->
-# and the region lies between `// [begin:law]` and `// [end:law]`, its common indent of two removed.
+# and the region lies between `// [begin:law]` and `// [end:law]`; an indent of two is removed.
 #   cmake -DROOT=<repository> -P check_snippets.cmake
 file(GLOB pages "${ROOT}/README.md" "${ROOT}/CONTRIBUTING.md" "${ROOT}/docs/*.md"
   "${ROOT}/docs/theory/*.md" "${ROOT}/docs/examples/*.md")
@@ -40,7 +40,7 @@ foreach(page IN LISTS pages)
     endif()
     read_plain("${ROOT}/${source}" code)
     string(FIND "${code}" "// <open>begin:${region}<close>\n" begin)
-    string(FIND "${code}" "  // <open>end:${region}<close>\n" stop)
+    string(FIND "${code}" "// <open>end:${region}<close>\n" stop)
     if(begin EQUAL -1 OR stop EQUAL -1)
       list(APPEND errors "${page}: no region ${region} in ${source}")
       continue()
@@ -49,8 +49,12 @@ foreach(page IN LISTS pages)
     math(EXPR begin "${begin} + ${length}")
     math(EXPR size "${stop} - ${begin}")
     string(SUBSTRING "${code}" ${begin} ${size} code)
-    string(REGEX REPLACE "\n  " "\n" code "\n${code}")
-    string(SUBSTRING "${code}" 1 -1 code)
+    # The end marker's own indent; then the common indent of what stands inside a function.
+    string(REGEX REPLACE "\n +$" "\n" code "${code}")
+    if(code MATCHES "^  ")
+      string(REGEX REPLACE "\n  " "\n" code "\n${code}")
+      string(SUBSTRING "${code}" 1 -1 code)
+    endif()
     if(NOT code STREQUAL block)
       list(APPEND errors "${page}: the snippet ${source} ${region} differs from the compiled code")
     endif()

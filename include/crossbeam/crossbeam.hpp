@@ -15,6 +15,7 @@
 #include "crossbeam/cell/crossed_beam.hpp"
 #include "crossbeam/cell/parameters.hpp"
 #include "crossbeam/cell/second_order.hpp"
+#include "crossbeam/cell/yarn.hpp"
 
 #include "crossbeam/law/shear.hpp"
 #include "crossbeam/law/woven_membrane.hpp"

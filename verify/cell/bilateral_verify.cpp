@@ -2,8 +2,10 @@
 // how it fails in compression. Pinned negative results.
 
 #include "cell/states.hpp"
+#include "crossbeam/base/simd.hpp"
 
 #include "support/claim.hpp"
+#include "support/random.hpp"
 
 #include <doctest/doctest.h>
 
@@ -17,6 +19,7 @@ using verify::Answer;
 using verify::answer;
 using verify::converged;
 using Bilateral = crossbeam::BilateralCell<double>;
+using Pack = crossbeam::Pack<double, 2>;
 
 /// Newton on the heights from a start of one's own, which finds the minima that the cell's start at
 /// w = 0 does not reach. True when it ends at a minimum of the energy.
@@ -104,6 +107,58 @@ TEST_CASE("V-CELL-18 the bilateral contact is unstable in compression and not un
                 "compression of the weft at (-5, 0) % [kN]", verify::Bound::lower);
   CHECK(cell.weft().H + through.forces.w2 < 0);
   CHECK(std::abs(answer(unilateral, -0.125, 0).forces.F2) < 1e-12);
+
+  // The status says what the eigenvalues of the energy's second derivative in the heights say, and
+  // that an iteration has not ended; for any fabric.
+  VERIFY_RANDOM(random, 2018);
+  int at_minimum = 0, elsewhere = 0, maxima = 0, open_ended = 0;
+  long wrong = 0;
+  for (int sample = 0; sample < 20000; ++sample) {
+    const auto fabric = verify::random_fabric(random);
+    const Bilateral any(fabric);
+    const double u1 = fabric.warp.length * random.uniform(-0.2, 0.1);
+    const double u2 = fabric.weft.length * random.uniform(-0.2, 0.1);
+    const auto s = any.solve(u1, u2);
+    CAPTURE(sample);
+    // Ten times the tolerance of the cell, eps^(3/4).
+    if (s.last_correction > 2e-11 * fabric.contact_length) {
+      ++open_ended;
+      wrong += s.status != CellStatus::not_converged || s.sweeps != 50;
+      continue;
+    }
+    if (s.status == CellStatus::not_converged) continue;
+    const crossbeam::YarnState<double> y1(any.warp(), u1, s.forces.w1),
+        y2(any.weft(), u2, s.forces.w2);
+    const double k3 = any.contact_stiffness();
+    const double a = y1.k_hh(any.warp()) + k3, b = y2.k_hh(any.weft()) + k3;
+    const double least = (a + b) / 2 - std::hypot((a - b) / 2, k3);
+    if (std::abs(least) < 1e-9 * (std::abs(a) + std::abs(b))) continue;
+    (least > 0 ? at_minimum : elsewhere)++;
+    wrong += (s.status == CellStatus::converged) != (least > 0);
+    // A maximum, where the determinant alone would be content, beside a minimum in the other lane.
+    if (a < 0 && a * b > k3 * k3) {
+      ++maxima;
+      Pack u1s(u1), u2s(u2);
+      u1s.set(1, 0.01 * fabric.warp.length);
+      u2s.set(1, 0.01 * fabric.weft.length);
+      wrong += any.solve(u1s, u2s).status == CellStatus::converged;
+    }
+  }
+  CAPTURE(at_minimum);
+  CAPTURE(elsewhere);
+  REQUIRE(at_minimum > 1000);
+  REQUIRE(elsewhere > 1000);
+  REQUIRE(maxima > 10);
+  REQUIRE(open_ended > 10);
+  verify::claim("V-CELL-18", static_cast<double>(wrong), 0,
+                "random states whose status is not that of the least eigenvalue");
+
+  // One lane is enough.
+  Pack u1(0.01 * 2.5), u2(0.01 * 2.5);
+  REQUIRE(cell.solve(u1, u2).status == CellStatus::converged);
+  u1.set(1, -0.04 * 2.5);
+  u2.set(1, -0.04 * 2.5);
+  CHECK(cell.solve(u1, u2).status == CellStatus::unstable);
 }
 
 TEST_SUITE_END();

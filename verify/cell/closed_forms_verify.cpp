@@ -112,6 +112,9 @@ TEST_CASE("V-CELL-08 pulled alone, a yarn locks when it is straight and carries 
   CHECK(contraction == doctest::Approx(-0.0391670).epsilon(1e-5));
 
   verify::Worst weft_strain, force;
+  using Style = verify::Curve::Style;
+  verify::Curve F{"cell", {}, {}}, F_by_hand{"by hand", {}, {}, Style::points};
+  verify::Curve weft = F, weft_by_hand = F_by_hand;
   for (double strain = 0.001; strain < 0.03; strain += 0.001) {
     const double u1 = strain * L;
     // Free weft: contracts until it carries nothing, the largest u2 with F2 <= 0.
@@ -124,8 +127,22 @@ TEST_CASE("V-CELL-08 pulled alone, a yarn locks when it is straight and carries 
     const double h1 = std::sqrt(std::max(l0 * l0 - (L + u1) * (L + u1), 0.0));
     const double expected = std::sqrt(l0 * l0 - (L3 - h1) * (L3 - h1)) - L;
     weft_strain.see(std::abs(u2 - expected) / L, "strain", strain);
-    force.see(std::abs(a.forces.F1 - ka * std::max(L + u1 - l0, 0.0)), "strain", strain);
+    const double expected_force = ka * std::max(L + u1 - l0, 0.0);
+    force.see(std::abs(a.forces.F1 - expected_force), "strain", strain);
+    for (auto* curve : {&F, &F_by_hand, &weft, &weft_by_hand}) curve->x.push_back(100 * strain);
+    F.y.push_back(a.forces.F1);
+    F_by_hand.y.push_back(expected_force);
+    weft.y.push_back(100 * u2 / L);
+    weft_by_hand.y.push_back(100 * expected / L);
   }
+  verify::show(verify::Plot{"V-CELL-08", "A warp yarn pulled alone: its force", "warp strain [%]",
+                            "warp force [kN]", false, false, {F, F_by_hand},
+                            "Nothing until the yarn is straight at 1.27 %, its modulus beyond."});
+  verify::show(verify::Plot{"V-CELL-08", "A warp yarn pulled alone: the free weft",
+                            "warp strain [%]", "weft strain [%]", false, false,
+                            {weft, weft_by_hand},
+                            "The weft gives its length to the warp (crimp interchange), 3.92 % "
+                            "when the warp is straight."});
   // The root is found to one rounding of u2 = 0.1 mm where F2 leaves zero; F2 leaves it linearly.
   weft_strain.claim("V-CELL-08", 1e-12, "contraction of the free weft against the frozen lengths");
   force.claim("V-CELL-08", 1e-10, "F_warp: zero up to 1.27191 %, EA/l0 beyond [kN]");
@@ -159,6 +176,21 @@ TEST_CASE("V-CELL-09 without bending slackness ends on the curve of crimp interc
                "sample", sample);
   }
   REQUIRE(tried > 1000);
+  verify::Map map{"V-CELL-09", "Slack map of the cell without bending", "warp strain [%]",
+                  "weft strain [%]", "contact force q [kN]", {}, {}, {},
+                  "Grey is slack: the yarns do not press on each other. The region ends on the "
+                  "curve of crimp interchange, and the force rises from zero on it."};
+  const Cell cell(verify::table_1_without_bending());
+  for (int i = -50; i <= 50; ++i) {
+    map.at_x.push_back(0.1 * i);
+    map.at_y.push_back(0.1 * i);
+    map.values.emplace_back();
+    for (int j = -50; j <= 50; ++j) {
+      const double q = answer(cell, 2.5e-3 * j, 2.5e-3 * i).forces.q;
+      map.values.back().push_back(q > 0 ? q : std::nan(""));
+    }
+  }
+  verify::show(map);
   verify::claim("V-CELL-09", wrong, 0, "states on the wrong side of the curve, of " +
                                            std::to_string(tried));
   inside.claim("V-CELL-09", 0, "force just inside the slack region [kN]: exactly zero");
@@ -184,15 +216,22 @@ TEST_CASE("V-CELL-10 the straight yarn bounds the membrane stiffness") {
                 "largest eigenvalue of dP/dlambda on [-5, 10] %^2 over the bound, less 1");
   verify::claim("V-CELL-10", largest / bound, 0.999, "and the bound is attained",
                 verify::Bound::lower);
-  // Width and symmetry enter as in Eq. 15.
-  Parameters q = p;
-  q.symmetry = 2;
-  q.weft.length = 5;
-  q.residual_compression_stiffness = 1;
-  const Cell wide(q);
-  const double warp = (wide.warp().ka + 1) * 2.5 / (2 * 5 * 0.5);
-  const double weft = (wide.weft().ka + 1) * 5 / (2 * 2.5 * 0.5);
-  CHECK(wide.membrane_stiffness_bound(0.5) == doctest::Approx(std::max(warp, weft)).epsilon(1e-14));
+  // Width and symmetry enter as in Eq. 15; the stiffer yarn decides, be it the warp or the weft.
+  verify::Worst formula;
+  for (const bool stiff_warp : {true, false}) {
+    Parameters q = p;
+    q.symmetry = 2;
+    q.weft.length = 4;
+    q.warp.youngs_modulus *= stiff_warp ? 7 : 1;
+    q.residual_compression_stiffness = 1.25;
+    const Cell wide(q);
+    const double warp = (wide.warp().ka + 1.25) * 2.5 / (2 * 4 * 0.5);
+    const double weft = (wide.weft().ka + 1.25) * 4 / (2 * 2.5 * 0.5);
+    REQUIRE((warp > weft) == stiff_warp);
+    formula.see(std::abs(wide.membrane_stiffness_bound(0.5) / std::max(warp, weft) - 1),
+                stiff_warp ? "stiff warp" : "stiff weft");
+  }
+  formula.claim("V-CELL-10", 1e-14, "the bound against its formula, unequal yarns, sine 0.5");
 }
 
 TEST_CASE("V-CELL-20 a slack yarn without bending carries exactly nothing") {

@@ -7,6 +7,7 @@
 #include "crossbeam/base/simd.hpp"
 
 #include "support/claim.hpp"
+#include "support/plots.hpp"
 #include "support/taylor_test.hpp"
 
 #include <doctest/doctest.h>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace {
 
@@ -106,6 +108,11 @@ TEST_SUITE_BEGIN("cell");
 TEST_CASE("V-CELL-03 forces are the energy's gradient and the tangent its second derivative") {
   VERIFY_RANDOM(random, 2003);
   verify::Worst first, second, third, spoiled;
+  verify::Plot plot{"V-CELL-03", "Taylor remainders of the stored energy", "step, as a share of h",
+                    "remainder [kN mm]", true, true, {},
+                    "A taut state of Table 1: each remainder falls with the power of the first "
+                    "term left out, down to round-off; with a force wrong by 1e-3 the slope turns "
+                    "from 2 to 1."};
   for (const auto& s : verify::states_on_both_sides(random, 80, margin)) {
     const LongCell cell(verify::converted<long double>(s.parameters));
     const LongAnswer at = verify::answer(cell, s.u1, s.u2);
@@ -116,18 +123,25 @@ TEST_CASE("V-CELL-03 forces are the energy's gradient and the tangent its second
     const double h2 = margin * s.parameters.weft.length * std::sin(angle);
     REQUIRE(std::abs(at.forces.F1 * h1) + std::abs(at.forces.F2 * h2) > 0);
     const double noise = 1e-3 * force_round_off(cell, s) * std::max(std::abs(s.u1), std::abs(s.u2));
-    const auto measure = [&](int order, double spoil, verify::Worst& worst, double first_step) {
+    const bool drawn = plot.curves.size() < 4;
+    const auto measure = [&](int order, double spoil, verify::Worst& worst, double first_step,
+                             const char* name) {
       const auto result = verify::taylor_test(
           order + 1,
           [&](double eps) { return energy_remainder(cell, s, at, h1, h2, eps, order, spoil); },
           first_step, noise);
       worst.see(result.deviation, s.taut ? "taut" : "slack", "u =", s.u1, s.u2, result.table);
+      if (drawn) plot.curves.push_back(verify::remainders(name, result));
     };
-    measure(0, 1, first, 0.5);
-    measure(1, 1, second, 1);
-    measure(2, 1, third, 1);
-    measure(1, 1 + 1e-3, spoiled, 1);
+    measure(0, 1, first, 0.5, "energy alone");
+    measure(1, 1, second, 1, "with forces");
+    measure(2, 1, third, 1, "with forces and tangent");
+    measure(1, 1 + 1e-3, spoiled, 1, "one force wrong by 1e-3");
   }
+  for (const int power : {1, 2, 3})
+    plot.curves.push_back(
+        verify::guide("slope " + std::to_string(power), power, plot.curves[power - 1]));
+  verify::show(plot);
   // A slope over a decade differs from the integer by the next term of the series: some eps / 10 at
   // the end of the table; a missing or wrong term makes it differ by 1.
   first.claim("V-CELL-03", 0.02, "|slope - 1| of the energy alone");

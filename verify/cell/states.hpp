@@ -67,6 +67,25 @@ bool converged(const BasicAnswer<R>& a) {
   return a.status == crossbeam::CellStatus::converged;
 }
 
+/// Violation of the equilibrium conditions at an answer, computed in X: vertical forces g1 = g2 = q
+/// relative to EA/l0 L3 of the stiffer yarn, contact law relative to L3, and the signs of heights.
+template <class X, class R>
+X violation(const crossbeam::CrossedBeamCell<R>& cell, R u1, R u2, const BasicAnswer<R>& a) {
+  using crossbeam::magnitude;
+  using crossbeam::maximum;
+  const X w1(a.forces.w1), w2(a.forces.w2), q(a.forces.q);
+  const crossbeam::YarnState<X> y1(cell.warp(), X(u1), w1), y2(cell.weft(), X(u2), w2);
+  const X L3(cell.parameters().contact_length);
+  const X force = X(cell.warp().ka < cell.weft().ka ? cell.weft().ka : cell.warp().ka) * L3;
+  // Shortening q/k3 where the contact presses, a gap where it does not.
+  const X gap = (w1 + w2 + q / X(cell.contact_stiffness())) / L3;
+  const X contact = q > X(0) ? magnitude(gap) : maximum(X(-gap), X(0));
+  const X below = maximum(X(-(X(cell.warp().H) + w1)), X(-(X(cell.weft().H) + w2))) / L3;
+  const X vertical = maximum(magnitude(X(y1.vertical_force(cell.warp()) - q)),
+                             magnitude(X(y2.vertical_force(cell.weft()) - q))) / force;
+  return maximum(maximum(vertical, contact), maximum(below, X(-q)));
+}
+
 /// The same fabric in another real type.
 template <class R>
 crossbeam::CellParameters<R> converted(const Parameters& p) {

@@ -107,6 +107,13 @@ TEST_CASE("V-CELL-14 the answer does not depend on the units") {
     bits += binary.forces.F1 != a.forces.F1 * 0x1p-4 || binary.forces.F2 != a.forces.F2 * 0x1p-4 ||
             binary.energy != a.energy * 0x1p-12 || binary.sweeps != a.sweeps ||
             binary.tangent.K12 != a.tangent.K12 * 0x1p4;
+    // Units of force far from 1, so that no guard against zero is an absolute number.
+    for (const double unit : {0x1p-120, 0x1p120}) {
+      const Answer far = answer(Cell(in_other_units(p, 1, unit)), u1, u2);
+      bits += far.forces.F1 != a.forces.F1 * unit || far.forces.F2 != a.forces.F2 * unit ||
+              far.forces.w1 != a.forces.w1 || far.forces.w2 != a.forces.w2 ||
+              far.sweeps != a.sweeps || far.tangent.K12 != a.tangent.K12 * unit;
+    }
   }
   decimal.claim("V-CELL-14", 1e-13, "kN, mm against N, m, relative to EA/l0 L3");
   verify::claim("V-CELL-14", bits, 0, "states that differ in any bit after powers of two");
@@ -264,6 +271,13 @@ TEST_CASE("V-CELL-19 the residual compressive stiffness is an energy of its own"
         verify::taylor_test(3, [&](double e) { return remainder(e, true); }, 1, noise);
     third.see(slope_3.deviation, "sample", sample, slope_3.table);
   }
+  // A yarn at its own length is not shortened: the virgin tangent is that of the taut yarn.
+  Parameters p = verify::table_1();
+  const Answer without = answer(Cell(p), 0, 0);
+  p.residual_compression_stiffness = 3;
+  const Answer with = answer(Cell(p), 0, 0);
+  CHECK(with.tangent.K11 == without.tangent.K11);
+  CHECK(with.tangent.K22 == without.tangent.K22);
   exact.claim("V-CELL-19", 1e-15, "F, U and K against kres min(u, 0), relative");
   // As in V-CELL-03.
   second.claim("V-CELL-19", 0.02, "|slope - 2| of the energy with its forces");

@@ -15,6 +15,9 @@ namespace {
 using namespace scenes;
 using Eigen::Vector3d;
 using verify::claim;
+using verify::Curve;
+using verify::Plot;
+using verify::show;
 using verify::Worst;
 
 constexpr double g = 1.0;  // [mm/ms^2]
@@ -106,6 +109,8 @@ TEST_CASE(
     "V-CONT-21 a plate on an incline slips from tan(angle) = mu on; viscous friction creeps") {
   constexpr double mu = 0.3;
   Worst holds, elastic, accelerates, creeps;
+  Curve line{"closed form", {}, {}, Curve::Style::line};
+  Curve points{"plate, elastic stick", {}, {}, Curve::Style::points};
   for (double factor : {0.5, 0.9, 0.999, 1.001, 1.1, 2.0}) {
     Incline slope{std::atan(mu * factor), mu};
     auto run = slope.run();
@@ -123,7 +128,18 @@ TEST_CASE(
       elastic.see(std::abs(slip / (g * std::sin(slope.angle) * areal_mass / spring) - 1), factor);
     }
     if (factor > 1) accelerates.see(std::abs(a / expected - 1), factor);
+    points.x.push_back(slope.angle * 180 / pi);
+    points.y.push_back((eigen(run.state().x.get(0)) - start).dot(slope.down()));
   }
+  for (int k = 0; k <= 62; ++k) {
+    const double angle = k / 2.0 * pi / 180;
+    const double a = std::max(g * (std::sin(angle) - mu * std::cos(angle)), 0.0);
+    line.x.push_back(k / 2.0);
+    line.y.push_back(a / 2 * 40 * 40);
+  }
+  show(Plot{"V-CONT-21", "Plate on an incline, mu = 0.3", "angle of the incline [deg]",
+            "way down in 40 ms [mm]", false, false, {line, points},
+            "At rest up to 16.7 deg = atan(mu), a thousandth beyond it under way."});
   // At rest, the damped oscillation on the elastic stick has died: rounding of g dt is left.
   holds.claim("V-CONT-21", 1e-12, "speed below the angle of friction [mm/ms]");
   // 1e-5 mm of coordinates of up to 5 mm: eleven digits less than their sixteen, twice.
@@ -268,6 +284,18 @@ TEST_CASE("V-CONT-23 capstan: tension along a strip on a cylinder grows with exp
   REQUIRE(std::abs(polygon / std::exp(mu * pi) - 1) < 1e-3);
   // The first node slips by the length at which its stick gives way, 0.5 % of what the strip
   // stretches; the polygon is 3e-4 off the circle.
+  Curve line{"mu theta", {}, {}, Curve::Style::line};
+  Curve points{"mesh", {}, {}, Curve::Style::points};
+  for (int e = tail; e < tail + wrap; ++e) {
+    const double theta = pi * (e - tail + 0.5) / wrap;  // middle of the facet
+    points.x.push_back(theta * 180 / pi);
+    points.y.push_back(std::log(tension(e) / tension(0)));
+    line.x.push_back(theta * 180 / pi);
+    line.y.push_back(mu * theta);
+  }
+  show(Plot{"V-CONT-23", "Capstan, mu = 0.25", "angle from the held end [deg]",
+            "logarithm of tension over that of the held end [-]", false, false, {line, points},
+            "A straight line of slope mu: every facet slips at its limit."});
   claim("V-CONT-23", std::abs(ratio / polygon - 1), 5e-3,
         "tension ratio against the polygon's closed form, relative");
   claim("V-CONT-23", std::abs(ratio / std::exp(mu * pi) - 1), 6e-3,

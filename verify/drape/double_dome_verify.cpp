@@ -81,35 +81,87 @@ double on_outline(const std::vector<std::array<double, 2>>& line, int of, double
 
 TEST_SUITE_BEGIN("drape");
 
-// The bands are the study's own: its extrapolation over mesh and speed, and what two honest codes may
-// differ by. Point 2 is judged in V-DRAPE-02, because it depends on the friction model.
-TEST_CASE("V-DRAPE-01 the realistic case at 2.5 mm and 1 m/s lies in the study's bands") {
+namespace {
+
+/// The bands are the study's own: its extrapolation over mesh and speed, and what two honest codes
+/// may differ by.
+/// @param left_out points that are not judged here
+void lies_in_the_bands(const std::string& id, const DrapeResult& r,
+                       const std::vector<int>& left_out = {}) {
   const drape::StudyReference study = references().study;
   REQUIRE(study.shear_deg.size() == 8);
-  const DrapeResult fine = run(realistic(2.5, 1));
-  REQUIRE(fine.quads.size() == 54 * 94);
   for (int p = 1; p <= 8; ++p)
-    if (p != 2)
-      claim("V-DRAPE-01", std::abs(shear(fine, p) - study.shear_deg[p - 1].value),
-            study.shear_deg[p - 1].band,
+    if (std::find(left_out.begin(), left_out.end(), p) == left_out.end())
+      claim(id, std::abs(shear(r, p) - study.shear_deg[p - 1].value), study.shear_deg[p - 1].band,
             "deg, distance from the study at point " + std::to_string(p));
   for (int p : {9, 10})
-    claim("V-DRAPE-01", std::abs(shear(fine, p)), study.slack_flange_shear_deg,
+    claim(id, std::abs(shear(r, p)), study.slack_flange_shear_deg,
           "deg, magnitude in the slack flange at point " + std::to_string(p));
-  claim("V-DRAPE-01", std::abs(fine.maximum_shear_deg - study.maximum_shear_deg.value),
+  claim(id, std::abs(r.maximum_shear_deg - study.maximum_shear_deg.value),
         study.maximum_shear_deg.band, "deg, largest element angle");
-  claim("V-DRAPE-01", std::abs(fine.draw_in_x - study.draw_in_x.value), study.draw_in_x.band,
+  claim(id, std::abs(r.draw_in_x - study.draw_in_x.value), study.draw_in_x.band,
         "mm, draw-in along x");
-  claim("V-DRAPE-01", std::abs(fine.draw_in_y - study.draw_in_y.value), study.draw_in_y.band,
+  claim(id, std::abs(r.draw_in_y - study.draw_in_y.value), study.draw_in_y.band,
         "mm, draw-in along y");
   for (int i = 0; i < 2; ++i)
-    claim("V-DRAPE-01", std::abs(fine.corner[i] - study.corner[i].value), study.corner[i].band,
+    claim(id, std::abs(r.corner[i] - study.corner[i].value), study.corner[i].band,
           i == 0 ? "mm, corner x" : "mm, corner y");
-  claim("V-DRAPE-01", std::abs(fine.ledger.back().shear - study.shear_energy.value),
-        study.shear_energy.band, "kN mm, shear energy of the quarter");
-  claim("V-DRAPE-01", std::abs(fine.residual_over_punch_work), 1e-3,
-        "ledger residual over punch work");
+  claim(id, std::abs(r.ledger.back().shear - study.shear_energy.value), study.shear_energy.band,
+        "kN mm, shear energy of the quarter");
+  claim(id, std::abs(r.residual_over_punch_work), 1e-3, "ledger residual over punch work");
+}
 
+/// Shear angles along the diagonal, this run's between the study's bands.
+void show_points(const std::string& id, const DrapeResult& r, const std::string& title) {
+  verify::Curve found{title, {}, {}, verify::Curve::Style::line};
+  verify::Curve low{"study, band", {}, {}, verify::Curve::Style::guide}, high = low;
+  verify::Curve middle{"study", {}, {}, verify::Curve::Style::points};
+  for (int p = 1; p <= 10; ++p) {
+    found.x.push_back(p);
+    found.y.push_back(shear(r, p));
+  }
+  int p = 0;
+  for (const auto& value : references().study.shear_deg) {
+    for (auto* curve : {&low, &high, &middle}) curve->x.push_back(p + 1);
+    low.y.push_back(value.value - value.band);
+    high.y.push_back(value.value + value.band);
+    middle.y.push_back(value.value);
+    ++p;
+  }
+  high.name = "";
+  verify::show(verify::Plot{id, "Double dome: shear angles, " + title, "point on the diagonal",
+                            "shear angle [deg]", false, false, {found, middle, low, high},
+                            "One high peak at point 5, a small one at point 8.", false});
+}
+
+DrapeCase with_study_friction(double element_size, double speed) {
+  DrapeCase c = realistic(element_size, speed);
+  REQUIRE(c.contact.friction_model == drape::FrictionModel::elastic_stick);
+  c.contact.friction_model = drape::FrictionModel::viscous;
+  return c;
+}
+
+}  // namespace
+
+// Point 2 depends on the friction model and is judged in V-DRAPE-02. On a mesh of 5 mm point 8, the
+// small peak, is low by another 0.4 deg and at the edge of its band; the long run has it inside.
+TEST_CASE("V-DRAPE-01 the realistic case at 5 mm and 1 m/s lies in the study's bands") {
+  const DrapeResult slow = run(realistic(5, 1)), fast = run(realistic(5, 2));
+  REQUIRE(slow.quads.size() == 27 * 47);
+  lies_in_the_bands("V-DRAPE-01", slow, {2, 8});
+  show_points("V-DRAPE-01", slow, "5 mm, 1 m/s");
+  // Development runs are made at 2 m/s. Halving the speed may change the part by 0.5 deg: beyond it,
+  // a run is not quasi-static.
+  for (int p : {2, 3, 4, 5, 6})
+    claim("V-DRAPE-01", std::abs(shear(fast, p) - shear(slow, p)), 0.5,
+          "deg, 2 m/s against 1 m/s, 5 mm, at point " + std::to_string(p));
+}
+
+TEST_CASE("V-DRAPE-01 the realistic case at 2.5 mm and 1 m/s lies in the study's bands (long)") {
+  const DrapeResult fine = run(realistic(2.5, 1));
+  REQUIRE(fine.quads.size() == 54 * 94);
+  lies_in_the_bands("V-DRAPE-01", fine, {2});
+  show_points("V-DRAPE-01", fine, "2.5 mm, 1 m/s");
   // 5 mm at 2 m/s against it, as development runs are made. Point 5 sits on the peak, and a speed of
   // 2 m/s takes 0.25 deg off it whatever the mesh: at 1 m/s the same mesh has to come within 0.3.
   const DrapeResult coarse = run(realistic(5, 2)), slow = run(realistic(5, 1));
@@ -125,21 +177,13 @@ TEST_CASE("V-DRAPE-01 the realistic case at 2.5 mm and 1 m/s lies in the study's
 // The study ran a slip-rate friction; the elastic stick moves point 2 by 0.25 deg. With the study's
 // own model all of the study's own numbers have to come out.
 TEST_CASE("V-DRAPE-02 with the study's friction model all its points are met") {
-  const drape::StudyReference study = references().study;
-  DrapeCase c = realistic(2.5, 1);
-  REQUIRE(c.contact.friction_model == drape::FrictionModel::elastic_stick);
-  c.contact.friction_model = drape::FrictionModel::viscous;
-  const DrapeResult viscous = run(c);
-  for (int p = 1; p <= 8; ++p)
-    claim("V-DRAPE-02", std::abs(shear(viscous, p) - study.shear_deg.at(p - 1).value),
-          study.shear_deg.at(p - 1).band,
-          "deg, distance from the study at point " + std::to_string(p));
-
-  DrapeCase coarse = realistic(5, 2);
-  const DrapeResult stick = run(coarse);
-  coarse.contact.friction_model = drape::FrictionModel::viscous;
-  claim("V-DRAPE-02", shear(stick, 2) - shear(run(coarse), 2), 0.15,
+  lies_in_the_bands("V-DRAPE-02", run(with_study_friction(5, 1)));
+  claim("V-DRAPE-02", shear(run(realistic(5, 2)), 2) - shear(run(with_study_friction(5, 2)), 2), 0.15,
         "deg that the elastic stick adds at point 2", Bound::lower);
+}
+
+TEST_CASE("V-DRAPE-02 with the study's friction model all its points are met at 2.5 mm (long)") {
+  lies_in_the_bands("V-DRAPE-02", run(with_study_friction(2.5, 1)));
 }
 
 // What any drape that claims the benchmark has to show, independent of the study's digits.
@@ -177,11 +221,13 @@ TEST_CASE("V-DRAPE-03 the formed part is the benchmark's: peak, second maximum, 
 
 // Rounding noise of 1e-9 mm must not show: bending makes the drape deterministic. Without it wrinkles
 // localise and the same noise moves the answer by an order of magnitude more: pinned beside it.
-TEST_CASE("V-DRAPE-04 a start perturbation of 1e-9 mm moves points 1 to 8 by less than 0.05 deg") {
+namespace {
+
+void noise_does_not_show(const std::vector<std::uint64_t>& seeds) {
   DrapeCase c = realistic(5, 2);
   const DrapeResult calm = run(c);
   double worst = 0, largest_shift = 0;
-  for (std::uint64_t seed : {1, 2, 3}) {
+  for (std::uint64_t seed : seeds) {
     c.blank.perturbation = 1e-9;
     c.blank.seed = seed;
     const DrapeResult noisy = run(c);
@@ -192,8 +238,13 @@ TEST_CASE("V-DRAPE-04 a start perturbation of 1e-9 mm moves points 1 to 8 by les
   }
   REQUIRE(largest_shift > 1e-10);  // the start really differs
   REQUIRE(largest_shift < 1e-8);
-  claim("V-DRAPE-04", worst, 0.05, "deg, largest change at points 1 to 8 over three seeds");
+  claim("V-DRAPE-04", worst, 0.05, "deg, largest change at points 1 to 8");
+}
 
+}  // namespace
+
+TEST_CASE("V-DRAPE-04 a start perturbation of 1e-9 mm moves points 1 to 8 by less than 0.05 deg") {
+  noise_does_not_show({1});
   DrapeCase bare = scene("paper-literal");
   bare.fabric.formulation = drape::CellFormulation::energy;
   bare.output.frames = 1;
@@ -202,6 +253,10 @@ TEST_CASE("V-DRAPE-04 a start perturbation of 1e-9 mm moves points 1 to 8 by les
   const DrapeResult bare_noisy = run(bare);
   claim("V-DRAPE-04", largest_change(bare_calm, bare_noisy, 8), 0.05,
         "deg, the same noise on a membrane without bending", Bound::lower);
+}
+
+TEST_CASE("V-DRAPE-04 and so do three other perturbations of 1e-9 mm (long)") {
+  noise_does_not_show({2, 3, 4});
 }
 
 TEST_CASE("V-DRAPE-05 the energy ledger closes in double and in float, and every term is there") {
@@ -248,8 +303,8 @@ TEST_CASE("V-DRAPE-07 one point cures the tension locking of a mesh at 45 deg to
   claim("V-DRAPE-07", one.ledger.back().hourglass / one.ledger.back().shear, 0.05,
         "hourglass over shear energy with one point: the cure is not hidden stiffness");
 
-  // Yarns along the mesh do not lock.
-  DrapeCase aligned = realistic(5, 2);
+  // Yarns along the mesh do not lock, at twice the speed either.
+  DrapeCase aligned = realistic(5, 4);
   const DrapeResult aligned_one = run(aligned);
   aligned.blank.gauss_points = 4;
   const DrapeResult aligned_four = run(aligned);

@@ -77,9 +77,11 @@ inline std::vector<NodeConstraint> fixed_rim(int nx, int ny) {
 /// A sheet stretched by `strain` both ways and held at its rim: taut, so that its law is smooth
 /// around it. Its nodes start with a smooth velocity in all directions [mm/ms].
 struct TautSheet {
-  static constexpr int n = 8;
   static constexpr double h = 5, strain = 0.015;
-  explicit TautSheet(double warp_angle = 0.3) : mesh(rectangle(n * h, n * h, n, n, warp_angle)) {}
+  /// @param elements along each side
+  explicit TautSheet(double warp_angle = 0.3, int elements = 8)
+      : n(elements), mesh(rectangle(n * h, n * h, n, n, warp_angle)) {}
+  int n;
   Mesh<4> mesh;
   Woven<ConstantShear<double>> law = fabric(pi / 2, 0.01);
   double speed = 1;

@@ -3,8 +3,10 @@
 // the border of a patch with P N per length and leaves its inside in equilibrium.
 
 #include "crossbeam/adapters/autodiff.hpp"
+#include "element/manufactured_load.hpp"
 #include "element/patches.hpp"
 #include "support/claim.hpp"
+#include "support/plots.hpp"
 #include "support/taylor_test.hpp"
 
 #include <doctest/doctest.h>
@@ -32,21 +34,6 @@ template <class Kind, class Law>
 auto sweep_of(const Mesh<corners_of<Kind>>& m, const Law& law,
               const MembraneOptions& options = {}) {
   return MembraneSweep<Lane, typename Kind::Element, Law>(m, law, areal_mass, options);
-}
-
-/// Nodal gradient of the energy under a homogeneous P, from the border alone.
-template <int Corners>
-Points border_forces(const Mesh<Corners>& m, const Eigen::Matrix<double, 3, 2>& P,
-                     const Base<double>& axes) {
-  Points out(m.node_count, Vector3d::Zero());
-  const Vector3d normal = axes.col(0).cross(axes.col(1));
-  for (const auto& [tail, head] : border<Corners>(m.elements)) {
-    const Vector3d side = eigen(m.nodes.get(head)) - eigen(m.nodes.get(tail));
-    const Vector3d force = P * (axes.transpose() * side.cross(normal)) / 2;
-    out[tail] += force;
-    out[head] += force;
-  }
-  return out;
 }
 
 }  // namespace
@@ -122,6 +109,91 @@ TEST_CASE(
   stretches.claim("V-ELEM-01", 5e-14, "yarn stretches");
   // That strain error times the straight yarn's 15 kN/mm.
   tensions.claim("V-ELEM-01", 1e-12, "yarn tensions [kN/mm]");
+
+  // Beyond affine maps: the fibre vectors at each point are the derivatives of the bilinear map there
+  // and the weights its area, both from positions on the element alone, anywhere in space.
+  Worst fibres, weights;
+  const auto at_points = [&](auto element) {
+    using Element = decltype(element);
+    for (int sample = 0; sample < 50; ++sample) {
+      const Matrix3d Q = random.rotation();
+      const Vector3d offset = random.vector(20);
+      std::array<Vector3d, 4> X, x;
+      const double corner[4][2] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
+      for (int a = 0; a < 4; ++a) {
+        const Vector3d in_plane(corner[a][0] + random.uniform(-0.5, 0.5),
+                                corner[a][1] + random.uniform(-0.5, 0.5), 0);
+        X[a] = Q * in_plane + offset;
+        x[a] = X[a] + random.vector(0.5);
+      }
+      const FibreDirections<double> directions{vec3(Q * direction(warp_angle)),
+                                               vec3(Q * direction(warp_angle + fibre_angle))};
+      const auto at = [](const std::array<Vector3d, 4>& p, double xi, double eta) -> Vector3d {
+        return ((1 - xi) * (1 - eta) * p[0] + (1 + xi) * (1 - eta) * p[1] +
+                (1 + xi) * (1 + eta) * p[2] + (1 - xi) * (1 + eta) * p[3]) / 4;
+      };
+      std::array<Vec3<double>, 4> corners, now;
+      for (int a = 0; a < 4; ++a) {
+        corners[a] = vec3(X[a]);
+        now[a] = vec3(x[a]);
+      }
+      Vec3<double> D[Element::vectors];
+      const Vec3<double> moved[4] = {now[0], now[1], now[2], now[3]};
+      Element::relative_vectors(moved, D);
+      const auto points = Element::coefficients(corners, directions);
+      for (int p = 0; p < Element::points; ++p) {
+        const double g = Element::points == 1 ? 0 : 1 / std::sqrt(3.0);
+        const double xi = p % 2 == 0 ? -g : g, eta = p / 2 == 0 ? -g : g;
+        // A bilinear map is linear along each coordinate: differences are derivatives.
+        const auto tangents = [&](const std::array<Vector3d, 4>& c) {
+          Eigen::Matrix<double, 3, 2> J;
+          J.col(0) = (at(c, 1, eta) - at(c, -1, eta)) / 2;
+          J.col(1) = (at(c, xi, 1) - at(c, xi, -1)) / 2;
+          return J;
+        };
+        const Eigen::Matrix<double, 3, 2> J = tangents(X), j = tangents(x);
+        const double area = J.col(0).cross(J.col(1)).norm() * (Element::points == 1 ? 4 : 1);
+        weights.see(std::abs(points[p].weight / area - 1), sample, p);
+        const auto see = [&](const auto& t, const Vec3<double>& F) {
+          const Vector3d expected =
+              j * ((J.transpose() * J).inverse() * (J.transpose() * eigen(F)));
+          Vector3d f = Vector3d::Zero();
+          for (int k = 0; k < Element::membrane_vectors; ++k) f += t[k] * eigen(D[k]);
+          fibres.see((f - expected).norm(), sample, p);
+        };
+        see(points[p].t1, directions.warp);
+        see(points[p].t2, directions.weft);
+      }
+    }
+  };
+  // Far from the origin nothing is lost that the coordinates have: these are exact.
+  const auto far_away = [&](auto element) {
+    using Element = decltype(element);
+    const double shape[4][2] = {{0, 0}, {3.25, 0.5}, {3, 2.75}, {-0.25, 3}};
+    std::array<Vec3<double>, 4> near, far;
+    for (int a = 0; a < 4; ++a) {
+      near[a] = {shape[a][0], shape[a][1], 0};
+      far[a] = {0x1p24 + shape[a][0], shape[a][1] - 0x1p25, 0x1p22};
+    }
+    const FibreDirections<double> directions{vec3(direction(warp_angle)),
+                                             vec3(direction(warp_angle + fibre_angle))};
+    const auto here = Element::coefficients(near, directions);
+    const auto there = Element::coefficients(far, directions);
+    for (int p = 0; p < Element::points; ++p) {
+      weights.see(std::abs(there[p].weight / here[p].weight - 1), "far away", p);
+      for (int k = 0; k < Element::vectors; ++k)
+        fibres.see(std::abs(there[p].t1[k] - here[p].t1[k]) +
+                       std::abs(there[p].t2[k] - here[p].t2[k]),
+                   "far away", p);
+    }
+  };
+  far_away(Quadrilateral<1>{});
+  far_away(Quadrilateral<4>{});
+  at_points(Quadrilateral<1>{});
+  at_points(Quadrilateral<4>{});
+  // Coordinates of 20 mm round to 4e-15 mm, over edges of 3 mm and flat corners.
+  fibres.claim("V-ELEM-01", 1e-13, "fibre vectors at the points of quadrilaterals, non-affine maps");
+  weights.claim("V-ELEM-01", 1e-13, "areas of the points of quadrilaterals");
 }
 
 TEST_CASE("V-ELEM-02 rigid motions change neither energy nor shear angle, and forces turn along") {
@@ -389,6 +461,25 @@ TEST_CASE("V-ELEM-07 fibres at 45 degrees lock an element of 2x2 points and not 
   // Within the next term of the series, (curvature h)^2 = 1e-3 at these meshes.
   claim("V-ELEM-07", std::abs(rate(FourPointKind{}) - 2), 0.05, "rate of 2x2 points, off 2");
   claim("V-ELEM-07", std::abs(rate(OnePointKind{}) - 4), 0.05, "rate of one point, off 4");
+
+  const auto over_h = [&](const char* name, auto kind, double warp) {
+    verify::Curve energies{name, {}, {}};
+    for (int n = 4; n <= 64; n *= 2) {
+      energies.x.push_back(40.0 / n);
+      energies.y.push_back(stored(kind, law, n, warp).yarn / one.shear);
+    }
+    return energies;
+  };
+  verify::Plot plot{"V-ELEM-07", "Tension locking", "element size [mm]",
+                    "yarn energy over shear energy", true, true,
+                    {over_h("2x2 points, 45 deg", FourPointKind{}, pi / 4),
+                     over_h("one point, 45 deg", OnePointKind{}, pi / 4),
+                     over_h("2x2 points, aligned", FourPointKind{}, 0)},
+                    "A shear that strains no yarn: the yarn energy should be nothing. 2x2 points "
+                    "at 45 deg store more of it than all the shear; one point does not."};
+  plot.curves.push_back(verify::guide("order 2", 2, plot.curves[0]));
+  plot.curves.push_back(verify::guide("order 4", 4, plot.curves[1], 3));
+  verify::show(plot);
 }
 
 namespace {
@@ -452,61 +543,113 @@ struct Manufactured {
   }
 };
 
+/// Root mean square distance of the relaxed sheet of n x n squares from the manufactured solution,
+/// over the side. `load(X, Y)` per reference area [kN/mm^2].
+template <class Kind, class Law, class Load>
+double manufactured_error(const Law& law, int n, const Load& load_at) {
+  using T = NativePack<double>;
+  constexpr int corners = corners_of<Kind>;
+  const double h = Manufactured::side / n;
+  verify::Random unused(1);
+  const Points X = grid(n, n, h, 0, unused);
+  const auto m = mesh<corners>(X, cells<corners>(n, n), warp_angle, fibre_angle);
+  std::vector<NodeConstraint> fixed;
+  Points exact, load;
+  double strongest = 0;
+  const auto area = m.tributary_areas();
+  for (int k = 0; k < m.node_count; ++k) {
+    const auto x = Manufactured::map(X[k].x(), X[k].y());
+    exact.push_back({x[0], x[1], x[2]});
+    const bool rim = k / (n + 1) == 0 || k / (n + 1) == n || k % (n + 1) == 0 || k % (n + 1) == n;
+    if (rim) fixed.push_back({k, true, true, true});
+    load.push_back(h * h * load_at(X[k].x(), X[k].y()));
+    if (!rim) strongest = std::max(strongest, load.back().norm() / (h * h));
+  }
+  REQUIRE(strongest > 1e-3);  // kN/mm^2: the forcing is really there
+  NodalState<double> state(m, areal_mass, fixed);
+  for (int k = 0; k < m.node_count; ++k) state.x.set(k, vec3(exact[k]));
+  // Slowest motion: out of the plane under a tension of 0.3 kN/mm; critically damped.
+  const double slowest = pi * std::sqrt(2 * 0.3 / areal_mass) / Manufactured::side;
+  CentralDifference<T> run(std::move(state), areal_mass, 2 * slowest);
+  run.add(std::make_unique<MembraneSweep<T, typename Kind::Element, Law>>(
+      m, law, areal_mass, MembraneOptions{0.05, 0}));
+  run.add(std::make_unique<NodeForces>(load));
+  const double dt = 0.9 * run.critical_step();
+  run.start(dt);
+  const int steps = static_cast<int>(20 / (slowest * dt));  // e^-20 of the start's error
+  for (int k = 0; k < steps; ++k) run.step();
+  double sum = 0;
+  for (int k = 0; k < m.node_count; ++k)
+    sum += area[k] * (eigen(run.state().x.get(k)) - exact[k]).squaredNorm();
+  return std::sqrt(sum) / Manufactured::side;
+}
+
+/// The orders of three meshes, for all three elements.
+template <class Law, class Load>
+void claim_order(const char* id, const char* title, const Law& law, const Load& load) {
+  Worst orders;
+  verify::Plot plot{id, title, "edge of an element [mm]", "distance from the solution [mm]",
+                    true, true, {}, "The error of every element falls along slope 2."};
+  for_each_kind([&](auto kind) {
+    using Kind = decltype(kind);
+    verify::Curve curve{Kind::name, {}, {}};
+    for (const int n : {8, 16, 32}) {
+      curve.x.push_back(Manufactured::side / n);
+      curve.y.push_back(manufactured_error<Kind>(law, n, load));
+    }
+    const auto& e = curve.y;
+    INFO(Kind::name, ": ", e[0], " ", e[1], " ", e[2]);
+    REQUIRE(e[0] < 0.1);  // mm, of a deflection of 1 mm
+    orders.see(std::abs(std::log2(e[0] / e[1]) - 2), Kind::name, "8 to 16", e[0], e[1]);
+    orders.see(std::abs(std::log2(e[1] / e[2]) - 2), Kind::name, "16 to 32", e[1], e[2]);
+    plot.curves.push_back(curve);
+  });
+  const auto& first = plot.curves[0];
+  plot.curves.push_back({"slope 2", {first.x[0], first.x[2]},
+                         {first.y[0] / 2, first.y[0] / 32}, verify::Curve::Style::guide});
+  verify::show(plot);
+  // The next term is of relative size (pi h / side)^2 = 0.15 at the coarsest mesh.
+  orders.claim(id, 0.15, "distance of the order from 2");
+}
+
 }  // namespace
 
 TEST_CASE("V-ELEM-08 a manufactured solution is approached with order 2") {
   // A shear modulus of the yarns' size lets the relaxation converge soon; the order does not
   // depend on it.
   const auto law = fabric(fibre_angle, 2.0);
-  Worst orders;
-  for_each_kind([&](auto kind) {
-    using Kind = decltype(kind);
-    using T = NativePack<double>;
-    constexpr int corners = corners_of<Kind>;
-    const auto error = [&](int n) {
-      const double h = Manufactured::side / n;
-      verify::Random unused(1);
-      const Points X = grid(n, n, h, 0, unused);
-      const auto m = mesh<corners>(X, cells<corners>(n, n), warp_angle, fibre_angle);
-      std::vector<NodeConstraint> fixed;
-      Points exact, load;
-      double strongest = 0;
-      const auto area = m.tributary_areas();
-      for (int k = 0; k < m.node_count; ++k) {
-        const auto x = Manufactured::map(X[k].x(), X[k].y());
-        exact.push_back({x[0], x[1], x[2]});
-        const bool rim =
-            k / (n + 1) == 0 || k / (n + 1) == n || k % (n + 1) == 0 || k % (n + 1) == n;
-        if (rim) fixed.push_back({k, true, true, true});
-        load.push_back(h * h * Manufactured::load(law, X[k].x(), X[k].y()));
-        if (!rim) strongest = std::max(strongest, load.back().norm() / (h * h));
-      }
-      REQUIRE(strongest > 1e-3);  // kN/mm^2: the forcing is really there
-      NodalState<double> state(m, areal_mass, fixed);
-      for (int k = 0; k < m.node_count; ++k) state.x.set(k, vec3(exact[k]));
-      // Slowest motion: out of the plane under a tension of 0.3 kN/mm; critically damped.
-      const double slowest = pi * std::sqrt(2 * 0.3 / areal_mass) / Manufactured::side;
-      CentralDifference<T> run(std::move(state), areal_mass, 2 * slowest);
-      run.add(std::make_unique<MembraneSweep<T, typename Kind::Element, decltype(law)>>(
-          m, law, areal_mass, MembraneOptions{0.05, 0}));
-      run.add(std::make_unique<NodeForces>(load));
-      const double dt = 0.9 * run.critical_step();
-      run.start(dt);
-      const int steps = static_cast<int>(20 / (slowest * dt));  // e^-20 of the start's error
-      for (int k = 0; k < steps; ++k) run.step();
-      double sum = 0;
-      for (int k = 0; k < m.node_count; ++k)
-        sum += area[k] * (eigen(run.state().x.get(k)) - exact[k]).squaredNorm();
-      return std::sqrt(sum) / Manufactured::side;
-    };
-    const double e8 = error(8), e16 = error(16), e32 = error(32);
-    INFO(Kind::name, ": ", e8, " ", e16, " ", e32);
-    REQUIRE(e8 < 0.1);  // mm, of a deflection of 1 mm
-    orders.see(std::abs(std::log2(e8 / e16) - 2), Kind::name, "8 to 16", e8, e16);
-    orders.see(std::abs(std::log2(e16 / e32) - 2), Kind::name, "16 to 32", e16, e32);
-  });
-  // The next term is of relative size (pi h / side)^2 = 0.15 at the coarsest mesh.
-  orders.claim("V-ELEM-08", 0.15, "distance of the order from 2");
+  claim_order("V-ELEM-08", "Manufactured solution, woven law", law,
+              [&](double X, double Y) { return Manufactured::load(law, X, Y); });
 }
 
-TEST_SUITE_END();
+TEST_CASE("V-ELEM-09 the load that a symbolic program derives is that of the dual numbers") {
+  VERIFY_RANDOM(random, 109);
+  LinearLaw<double> law;
+  law.angle = FibreAngle<double>(fibre_angle);
+  const auto derived = [&](double X, double Y) {
+    const auto warp = direction(warp_angle), weft = direction(warp_angle + fibre_angle);
+    const auto b = manufactured::load(X, Y, Manufactured::side, law.C, law.G, warp.x(), warp.y(),
+                                      weft.x(), weft.y());
+    return Vector3d(b[0], b[1], b[2]);
+  };
+  Worst positions, loads;
+  Vector3d strongest = Vector3d::Zero();
+  std::vector<std::pair<Vector3d, Vector3d>> pairs;
+  for (int sample = 0; sample < 1000; ++sample) {
+    const double X = random.uniform(0, Manufactured::side);
+    const double Y = random.uniform(0, Manufactured::side);
+    const auto x = Manufactured::map(X, Y), y = manufactured::position(X, Y, Manufactured::side);
+    for (int i = 0; i < 3; ++i) positions.see(std::abs(x[i] - y[i]), X, Y);
+    pairs.emplace_back(Manufactured::load(law, X, Y), derived(X, Y));
+    strongest = strongest.cwiseMax(pairs.back().second.cwiseAbs());
+  }
+  // Every component of the forcing is really there [kN/mm^2].
+  REQUIRE(strongest.minCoeff() > 1e-3);
+  for (const auto& [dual, symbolic] : pairs)
+    loads.see((dual - symbolic).cwiseQuotient(strongest).cwiseAbs().maxCoeff());
+  // A rounding of 40 mm; some fifty terms of the load's own size, each with its roundings.
+  positions.claim("V-ELEM-09", 2e-14, "positions of the two programs [mm]");
+  loads.claim("V-ELEM-09", 1e-13, "load by dual numbers against the symbolic one, relative");
+  claim_order("V-ELEM-09", "Manufactured solution, quadratic law, symbolic load", law, derived);
+}
+

@@ -17,6 +17,20 @@ namespace {
 
 using std::numbers::pi;
 
+/// A number of the user's own, as a multiprecision type is: pi comes from its arctangent.
+struct OwnNumber {
+  long double value;
+  explicit OwnNumber(int x) : value(x) {}
+  friend OwnNumber atan(OwnNumber x) {
+    x.value = std::atan(x.value);
+    return x;
+  }
+  friend OwnNumber operator*(int a, OwnNumber b) {
+    b.value *= a;
+    return b;
+  }
+};
+
 /// Angle between two plane vectors of directions a and b after stretches, through the public chain.
 template <class S>
 S shear_of(S delta_bar, S opening, S stretch1, S stretch2, S turn) {
@@ -112,6 +126,10 @@ TEST_CASE("V-KIN-04 the shear angle is signed, blind to stretch and turn, and ex
   }
   small.claim("V-KIN-04", 5e-16, "relative error of angles from 1e-15 rad, perpendicular yarns");
   CHECK(crossbeam::shear_angle(0.0, right) == 0.0);
+  CHECK_FALSE(std::signbit(crossbeam::arcsine(0.0)));
+  // The half circle of a number type that std does not know.
+  CHECK(std::abs(crossbeam::detail::half_pi<OwnNumber>().value -
+                 std::numbers::pi_v<long double> / 2) < 1e-18L);
   CHECK(pi / 2 - std::acos(1e-17) == 0.0);  // the form that was not taken
 }
 

@@ -74,6 +74,56 @@ double largest(const M& m) {
   return m.cwiseAbs().maxCoeff();
 }
 
+/// What a scan of waves in strained fabrics finds [kN/mm].
+struct Waves {
+  double least = 0;     ///< most negative eigenvalue of the acoustic tensor
+  double below = 0;     ///< the same less the compressive principal stress of its state
+  double softened = 0;  ///< largest compressive principal stress met
+};
+
+/// Second variation of W(F) under F -> F + a (x) n: a . Q(n) a, the acoustic quotient, for surface
+/// gradients F (3x2) and a in space: S : (n (x) n) |a|^2 + D : C : D, D = sym(F^T a (x) n). Fibres
+/// -5..5 %, shear up to 0.8 rad.
+template <class Law>
+Waves scan_waves(const Law& law, int degrees, verify::Random& random, int states) {
+  Waves out;
+  for (int sample = 0; sample < states; ++sample) {
+    const Matrix2<double> E =
+        verify::strain_of(random.uniform(0.95, 1.05), random.uniform(0.95, 1.05),
+                          random.uniform(-0.8, 0.8), degrees);
+    const auto r = crossbeam::membrane_response(law, E, crossbeam::Tangent::yes);
+    REQUIRE(r.status == crossbeam::CellStatus::converged);
+    const double stress = (r.S(0, 0) + r.S(1, 1)) / 2 -
+                          std::hypot((r.S(0, 0) - r.S(1, 1)) / 2, r.S(0, 1));
+    const double compression = std::min(stress, 0.0);
+    out.softened = std::min(out.softened, compression);
+    // F as the Cholesky factor of C = 1 + 2 E, in the plane; space adds the normal.
+    const double C11 = 1 + 2 * E(0, 0), C12 = 2 * E(0, 1), C22 = 1 + 2 * E(1, 1);
+    Base<double> F;
+    F << std::sqrt(C11), C12 / std::sqrt(C11), 0, std::sqrt(C22 - C12 * C12 / C11), 0, 0;
+    REQUIRE(std::abs((F.transpose() * F)(0, 1) - C12) < 1e-14);
+    for (int k = 0; k < 60; ++k) {
+      const double by = k * M_PI / 60;
+      const Eigen::Vector2d n(std::cos(by), std::sin(by));
+      // Q(n) column by column.
+      Matrix3<double> Q = n.dot(r.S * n) * Matrix3<double>::Identity();
+      Eigen::Matrix3d strain;  // columns: Voigt strain of a = e_k
+      for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector2d g = F.row(i);
+        strain.col(i) << g(0) * n(0), g(1) * n(1), g(0) * n(1) + g(1) * n(0);
+      }
+      Q += strain.transpose() * r.dS_dE * strain;
+      // Least eigenvalue of the in-plane block and of the normal, which decouple.
+      const double mean = (Q(0, 0) + Q(1, 1)) / 2, half = (Q(0, 0) - Q(1, 1)) / 2;
+      REQUIRE(std::abs(Q(0, 2)) + std::abs(Q(1, 2)) < 1e-12);
+      const double least = std::min(mean - std::hypot(half, Q(0, 1)), Q(2, 2));
+      out.least = std::min(out.least, least);
+      out.below = std::min(out.below, least - compression);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 TEST_SUITE_BEGIN("law");
@@ -144,47 +194,38 @@ TEST_CASE("V-LAW-07 the Cauchy stress is symmetric, tangential, and carries the 
 
 TEST_CASE("V-LAW-16 without bending the yarns are stable against every in-plane and bending wave") {
   VERIFY_RANDOM(random, 3016);
-  // Second variation of W(F) under F -> F + a (x) n: a . Q(n) a, the acoustic quotient, for surface
-  // gradients F (3x2) and a in space: S : (n (x) n) |a|^2 + D : C : D, D = sym(F^T a (x) n).
   const auto scan = [&](double second_moment) {
     crossbeam::CellParameters<double> p;
     p.warp.second_moment_of_area = p.weft.second_moment_of_area = second_moment;
-    const auto law = verify::woven(p, crossbeam::NoShear<double>{}, 90);
-    double least = 0;
-    for (int sample = 0; sample < 4000; ++sample) {
-      const Matrix2<double> E =
-          verify::strain_of(random.uniform(0.95, 1.05), random.uniform(0.95, 1.05),
-                            random.uniform(-0.8, 0.8), 90);
-      const auto r = crossbeam::membrane_response(law, E, crossbeam::Tangent::yes);
-      REQUIRE(r.status == crossbeam::CellStatus::converged);
-      // F as the Cholesky factor of C = 1 + 2 E, in the plane; space adds the normal.
-      const double C11 = 1 + 2 * E(0, 0), C12 = 2 * E(0, 1), C22 = 1 + 2 * E(1, 1);
-      Base<double> F;
-      F << std::sqrt(C11), C12 / std::sqrt(C11), 0, std::sqrt(C22 - C12 * C12 / C11), 0, 0;
-      REQUIRE(std::abs((F.transpose() * F)(0, 1) - C12) < 1e-14);
-      for (int k = 0; k < 60; ++k) {
-        const double by = k * M_PI / 60;
-        const Eigen::Vector2d n(std::cos(by), std::sin(by));
-        // Q(n) column by column.
-        Matrix3<double> Q = n.dot(r.S * n) * Matrix3<double>::Identity();
-        Eigen::Matrix3d strain;  // columns: Voigt strain of a = e_k
-        for (int i = 0; i < 3; ++i) {
-          const Eigen::Vector2d g = F.row(i);
-          strain.col(i) << g(0) * n(0), g(1) * n(1), g(0) * n(1) + g(1) * n(0);
-        }
-        Q += strain.transpose() * r.dS_dE * strain;
-        // Least eigenvalue of the in-plane block and of the normal, which decouple.
-        const double mean = (Q(0, 0) + Q(1, 1)) / 2, half = (Q(0, 0) - Q(1, 1)) / 2;
-        REQUIRE(std::abs(Q(0, 2)) + std::abs(Q(1, 2)) < 1e-12);
-        least = std::min({least, mean - std::hypot(half, Q(0, 1)), Q(2, 2)});
-      }
-    }
-    return least;
+    return scan_waves(verify::woven(p, crossbeam::NoShear<double>{}, 90), 90, random, 4000).least;
   };
-  // Round-off of entries of 14 kN/mm.
-  verify::claim("V-LAW-16", -scan(0), 1e-13, "most negative acoustic eigenvalue, I = 0 [kN/mm]");
+  // Round-off of entries of 14 kN/mm: near straightness up to two hundred roundings (V-CELL-29).
+  verify::claim("V-LAW-16", -scan(0), 1e-12, "most negative acoustic eigenvalue, I = 0 [kN/mm]");
   // With bending a buckled yarn carries up to 1.1e-3 kN of compression over a width of 2.5 mm.
   verify::claim("V-LAW-16", -scan(1e-4), 6e-4, "the same with the bending of Table 1 [kN/mm]");
+}
+
+TEST_CASE("V-LAW-22 with a shear layer waves soften by the compressive stress alone: wrinkles") {
+  VERIFY_RANDOM(random, 3022);
+  verify::Worst constant, by_angle;
+  for (const int degrees : {60, 90, 120})
+    verify::for_each_shear<double>(degrees, [&](const std::string& name, const auto& shear) {
+      crossbeam::CellParameters<double> p;
+      p.warp.second_moment_of_area = p.weft.second_moment_of_area = 0;
+      const auto law = verify::woven(p, shear, degrees);
+      const Waves w = scan_waves(law, degrees, random, 1000);
+      const bool quadratic = name == "none" || name.starts_with("constant");
+      // Slack yarns and shear: principal stresses of both signs. The scan sees compression.
+      if (name != "none") REQUIRE(w.softened < -1e-5);
+      (quadratic ? constant : by_angle).see(-w.below, name, degrees, "softened", w.softened);
+    });
+  // A quadratic energy in the strain, and yarns without bending, have a positive tangent dS/dE; left
+  // is n . S n, the wave's share of the stress. Round-off as V-LAW-16.
+  constant.claim("V-LAW-22", 1e-12,
+                 "eigenvalue below the least principal stress [kN/mm], constant modulus");
+  // An energy in the angle adds its traction, 1e-4 kN/mm, times the second derivative of the angle,
+  // which has no sign ([L-5]): a measured property, pinned.
+  by_angle.claim("V-LAW-22", 2e-5, "the same, energies in the fibre angle [kN/mm]");
 }
 
 TEST_CASE("V-LAW-17 at rest there is no stress and no energy, and never less energy than at rest") {

@@ -6,6 +6,7 @@
 
 #include "law/laws.hpp"
 #include "support/claim.hpp"
+#include "support/plots.hpp"
 #include "support/taylor_test.hpp"
 
 #include <doctest/doctest.h>
@@ -67,6 +68,10 @@ TEST_SUITE_BEGIN("law");
 TEST_CASE("V-LAW-03 S is the energy's gradient and dS/dE its Hessian, by rate") {
   VERIFY_RANDOM(random, 3003);
   verify::Worst second, third, spoiled;
+  verify::Plot plot{"V-LAW-03", "", "step, as a share of H", "remainder of W [kN/mm]", true, true,
+                    {}, "S is the derivative of W when the remainder falls with slope 2, dS/dE the "
+                    "second one when it falls with slope 3; with an S12 wrong by 1 % the slope "
+                    "turns from 2 to 1."};
   using X = long double;
   for (const int degrees : {60, 90, 120})
     verify::for_each_shear<X>(degrees, [&](const std::string& name, const auto& shear) {
@@ -99,13 +104,24 @@ TEST_CASE("V-LAW-03 S is the energy's gradient and dS/dE its Hessian, by rate") 
         const auto slope_3 =
             verify::taylor_test(3, [&](double e) { return remainder(e, true, 1); }, 1, noise);
         third.see(slope_3.deviation, name, degrees, "deg, sample", sample, slope_3.table);
-        if (std::abs(s(2) * h(2)) > 1e-8)
-          spoiled.see(
-              verify::taylor_test(2, [&](double e) { return remainder(e, false, 1.01L); }, 1, noise)
-                  .deviation);
+        if (std::abs(s(2) * h(2)) > 1e-8) {
+          const auto spoilt = [&](double e) { return remainder(e, false, 1.01L); };
+          const auto wrong = verify::taylor_test(2, spoilt, 1, noise);
+          spoiled.see(wrong.deviation);
+          if (plot.curves.empty() && name == "polynomial B") {
+            plot.title = "Taylor remainders of the membrane energy: " + name + ", " +
+                         std::to_string(degrees) + " deg";
+            plot.curves = {verify::remainders("with S", slope_2),
+                           verify::remainders("with S and dS/dE", slope_3),
+                           verify::remainders("S12 wrong by 1 %", wrong)};
+            plot.curves.push_back(verify::guide("slope 2", 2, plot.curves[0]));
+            plot.curves.push_back(verify::guide("slope 3", 3, plot.curves[1]));
+          }
+        }
       }
     });
   REQUIRE(second.seen() == 3 * 8 * 6);
+  verify::show(plot);
   // The next term of the series at the last steps of the table; a wrong term shows as 1.
   second.claim("V-LAW-03", 0.02, "|slope - 2| of W with S, 8 shear layers, 60/90/120 deg");
   // Some states have next to no third derivative, and the fourth bends the slope.

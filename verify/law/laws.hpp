@@ -3,6 +3,7 @@
 /// The shear layers, fibre angles and states that the tests of the law share.
 
 #include "crossbeam/law/woven_membrane.hpp"
+#include "crossbeam/verification/strains.hpp"
 
 #include "support/random.hpp"
 
@@ -15,7 +16,7 @@ namespace verify {
 
 template <class R>
 R radians(int degrees) {
-  return R(degrees) * (std::numbers::pi_v<R> / 180);
+  return R(degrees) * (crossbeam::detail::half_pi<R>() / R(90));
 }
 
 template <class R>
@@ -69,18 +70,10 @@ auto woven(const crossbeam::CellParameters<R>& parameters, const Shear& shear, i
                                                width);
 }
 
-/// Strain tensor E (Cartesian) of given fibre stretches and shear angle.
 inline crossbeam::Matrix2<double> strain_of(double stretch1, double stretch2, double shear,
                                             int degrees) {
-  const double delta = radians<double>(degrees);
-  // Columns: images of Y1 = F1 and of F2, then of Y2 by linearity.
-  Eigen::Matrix2d f, F;
-  f << stretch1, stretch2 * std::cos(delta - shear), 0, stretch2 * std::sin(delta - shear);
-  F << 1, std::cos(delta), 0, std::sin(delta);
-  Eigen::Matrix2d inverse;
-  inverse << 1, -std::cos(delta) / std::sin(delta), 0, 1 / std::sin(delta);
-  const Eigen::Matrix2d gradient = f * inverse;
-  return (gradient.transpose() * gradient - Eigen::Matrix2d::Identity()) / 2;
+  return crossbeam::verification::strain_of(stretch1, stretch2, shear,
+                                            fibre_angle<double>(degrees));
 }
 
 /// A strain of a drape: fibres -2..3 %, shear up to 0.6 rad, fibres never closer than 20 deg, the

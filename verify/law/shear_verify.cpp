@@ -86,9 +86,72 @@ TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its mod
   // The angle comes from a cosine: 1e-16 / (sin delta gamma) with gamma >= 0.02 is 1e-14, which the
   // laws' powers of gamma may triple.
   polynomial.claim("V-LAW-10", 1e-13, "polynomial laws A and B against Gauss' rule");
+
+  const auto right = verify::fibre_angle<double>(90);
+  const auto drawn = [&](const char* name, const auto& shear) {
+    verify::Curve curve{name, {}, {}};
+    for (int k = -45; k <= 45; ++k) {
+      curve.x.push_back(0.02 * k);
+      curve.y.push_back(1e3 * traction(shear, 0.02 * k, 90));
+    }
+    return curve;
+  };
+  verify::Plot plot{"V-LAW-10", "Shear laws", "shear angle gamma [rad]", "shear traction [N/mm]",
+                    false, false,
+                    {drawn("law A", verify::polynomial_shear<double>(verify::law_A, right)),
+                     drawn("law B", verify::polynomial_shear<double>(verify::law_B, right)),
+                     drawn("tabulated", verify::tabulated_shear<double>(right))},
+                    "Odd in gamma, from small to locking angles; dots: modulus integrated by "
+                    "Gauss' rule."};
+  verify::Curve dots{"by Gauss' rule", {}, {}, verify::Curve::Style::points};
+  for (const auto& coefficients : {verify::law_A, verify::law_B})
+    for (int k = -4; k <= 4; ++k) {
+      dots.x.push_back(0.2 * k);
+      const auto modulus = [&](double g) { return horner(coefficients, std::abs(g)); };
+      dots.y.push_back(integral(modulus, 0.2 * k));
+    }
+  plot.curves.push_back(dots);
+  verify::show(plot);
   energy.claim("V-LAW-10", 1e-13, "their energy against Gauss' rule applied twice");
   table.claim("V-LAW-10", 1e-13, "tabulated law at and between its points");
   oddness.claim("V-LAW-10", 1e-13, "tau(-gamma) = -tau(gamma)");
+
+  // The bound of the modulus that the critical time step needs is its largest value up to 1 rad: at
+  // the end, at the beginning or between. Scanned by differences of the traction.
+  verify::Worst bounds;
+  using crossbeam::PolynomialCurve;
+  for (const std::vector<double>& a : {std::vector<double>{1e-3, 2e-3}, {3e-3, -1e-3},
+                                       {1e-3, 0.0, 5e-3, -4e-3}, verify::law_A}) {
+    const PolynomialCurve<double> curve(a);
+    double largest = 0;
+    for (int k = 0; k <= 4000; ++k) {
+      const double g = k / 4000.0, h = 1e-5;
+      largest = std::max(largest, (curve.traction(g + h) - curve.traction(g - h)) / (2 * h));
+    }
+    const crossbeam::PolynomialShear<double> shear(curve, right);
+    bounds.see(std::abs(shear.modulus_bound() / largest - 1), "polynomial of", a.size(), "terms");
+  }
+  bounds.see(std::abs(verify::tabulated_shear<double>(right).modulus_bound() / 2e-4 - 1), "table");
+  // Eq. 26 in pure shear: E12 = beta12 / sin delta, dtau/dgamma = d2W/dgamma2 at rest = G.
+  for (const int degrees : {60, 90, 120})
+    for (const auto frame : {crossbeam::ShearFrame::cartesian, crossbeam::ShearFrame::fibre}) {
+      const double sine = std::sin(verify::radians<double>(degrees));
+      const crossbeam::ConstantShear<double> shear(0.003, verify::fibre_angle<double>(degrees),
+                                                   crossbeam::ShearMeasure::tensor, frame);
+      const double b = frame == crossbeam::ShearFrame::cartesian ? 1 / sine : 1;
+      bounds.see(std::abs(shear.modulus_bound() / (0.003 * b * b) - 1), "constant", degrees);
+      // And the law: the yarns' bound plus four shear moduli, [C-10].
+      const auto law = verify::woven(crossbeam::CellParameters<double>{}, shear, degrees);
+      const double expected = law.cell().membrane_stiffness_bound(sine) + 4 * shear.modulus_bound();
+      bounds.see(std::abs(law.stiffness_bound() / expected - 1), "law", degrees);
+    }
+  // Steps of 0.01 rad beside the largest value of the cubic: half a step squared times 12.
+  bounds.claim("V-LAW-10", 1e-4, "bound of the modulus against its largest value up to 1 rad");
+  CHECK(crossbeam::NoShear<double>{}.modulus_bound() == 0);
+  // The modulus at a point of the table is that of the line that begins there.
+  const crossbeam::TabulatedCurve<double> curve({0, 0.35, 0.7}, {0, 2e-5, 9e-5});
+  CHECK(curve.modulus(0.0) == doctest::Approx(2e-5 / 0.35).epsilon(1e-14));
+  CHECK(curve.modulus(0.35) == doctest::Approx(7e-5 / 0.35).epsilon(1e-14));
 }
 
 TEST_CASE("V-LAW-11 the two published moduli of the fabric agree at 0.5 rad, 0.186 MPa") {
@@ -130,7 +193,9 @@ TEST_CASE("V-LAW-12 shear input that is no elastic law is refused by name") {
   for (const double modulus : {-1e-3, nan, inf})
     must_refuse("shear.modulus", [&] { crossbeam::ConstantShear<double>(modulus, angle); });
   // A modulus that is negative somewhere below 1.2 rad: at zero, in the middle, at the end.
-  for (const List& a : {List{-1e-3}, List{0.05, -1, 1}, List{1, 0, -1}})
+  // The last two are negative at zero alone, and beyond 1.195 rad alone.
+  for (const List& a : {List{-1e-3}, List{0.05, -1, 1}, List{1, 0, -1}, List{-1e-3, 1},
+                        List{1.195, -1}})
     must_refuse("shear.coefficients: G(", [&] { Polynomial{a}; });
   must_refuse("shear.coefficients", [&] { Polynomial{List{}}; });
   must_refuse("shear.coefficients", [&] { Polynomial{List(9, 1.0)}; });
@@ -152,8 +217,9 @@ TEST_CASE("V-LAW-12 shear input that is no elastic law is refused by name") {
   CHECK_NOTHROW(verify::polynomial_shear<double>(verify::law_A, angle));
   CHECK_NOTHROW(verify::polynomial_shear<double>(verify::law_B, angle));
   CHECK_NOTHROW(Polynomial(List{0}));
+  CHECK_NOTHROW(Polynomial(List{1.205, -1}));
   CHECK_NOTHROW(Table({0, 1}, {0, 0}));
-  REQUIRE(asked == 21);
+  REQUIRE(asked == 23);
   // A count: every one of them or the claim is false.
   verify::claim("V-LAW-12", asked - refused, 0, "bad shear inputs that were not refused by name");
 }

@@ -6,12 +6,12 @@
 
 #include "crossbeam/base/linalg.hpp"
 #include "crossbeam/cell/parameters.hpp"
+#include "crossbeam/kinematics/fibre_frame.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <fstream>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -72,7 +72,7 @@ crossbeam::CellParameters<R> reference_parameters(const Json& state) {
 /// The angle fields are whole degrees.
 template <class R>
 R reference_angle(const Json& state, const char* field) {
-  return number<R>(state.at(field)) * (std::numbers::pi_v<R> / 180);
+  return number<R>(state.at(field)) * (crossbeam::detail::half_pi<R>() / R(90));
 }
 
 template <class R>

@@ -11,9 +11,11 @@
 
 #include "crossbeam/base/scalar.hpp"
 #include "crossbeam/cell/parameters.hpp"
+#include "crossbeam/cell/yarn.hpp"
 
 #include <cmath>
 #include <concepts>
+#include <utility>
 
 namespace crossbeam {
 
@@ -46,16 +48,18 @@ struct SolverControl {
   static constexpr SolverControl fixed(int n) { return {n}; }
 };
 
-/// One yarn's constants, derived once. R is a plain real type.
-template <class R>
+/// One yarn's constants, derived once. R is a plain real type, Law its axial law.
+template <class R, class Law = LinearYarn>
 struct YarnConstants {
+  [[no_unique_address]] Law law{};
   R ka, kb;      ///< axial EA/l0 and bending kbc EI/l0^3 stiffness [kN/mm], tag [C-2]
   R L, H, l0;    ///< projected length, crimp height, chord length in the unstressed cell [mm]
   R c0, s0;      ///< cosine and sine of the crimp angle
   R least_start_squared;  ///< least height of a start, squared [mm^2], tag [C-5]
 
   YarnConstants() = default;
-  YarnConstants(const YarnParameters<R>& yarn, R height, R boundary_factor) {
+  YarnConstants(const YarnParameters<R>& yarn, R height, R boundary_factor, Law axial_law)
+      : law(std::move(axial_law)) {
     using std::cbrt;
     using std::sqrt;
     L = yarn.length;
@@ -76,10 +80,11 @@ struct YarnState {
   T e, t;      ///< chord elongation, transverse displacement
   T c, s;      ///< current cosine and sine
   T N;         ///< axial force
+  T k;         ///< axial stiffness dN/de
   T N_over_l;  ///< string stiffness
 
-  template <class R>
-  CROSSBEAM_INLINE YarnState(const YarnConstants<R>& y, const T& u, const T& w) {
+  template <class Yarn>
+  CROSSBEAM_INLINE YarnState(const Yarn& y, const T& u, const T& w) {
     using std::sqrt;
     const T Lc = T(y.L) + u, h = T(y.H) + w;
     const T l = sqrt(Lc * Lc + h * h);
@@ -88,33 +93,34 @@ struct YarnState {
     t = T(y.c0) * w - T(y.s0) * u;
     c = Lc * inv_l;
     s = h * inv_l;
-    N = T(y.ka) * e;
+    N = T(y.ka) * y.law.tension(e, T(y.l0));
+    k = T(y.ka) * y.law.modulus(e, T(y.l0));
     N_over_l = N * inv_l;
   }
 
-  template <class R>
-  CROSSBEAM_INLINE T energy(const YarnConstants<R>& y) const {
-    return T(0.5) * (T(y.ka) * e * e + T(y.kb) * t * t);
+  template <class Yarn>
+  CROSSBEAM_INLINE T energy(const Yarn& y) const {
+    return T(y.ka) * y.law.energy(e, T(y.l0)) + T(0.5) * T(y.kb) * t * t;
   }
-  template <class R>
-  CROSSBEAM_INLINE T horizontal_force(const YarnConstants<R>& y) const {
+  template <class Yarn>
+  CROSSBEAM_INLINE T horizontal_force(const Yarn& y) const {
     return N * c - T(y.kb * y.s0) * t;
   }
-  template <class R>
-  CROSSBEAM_INLINE T vertical_force(const YarnConstants<R>& y) const {
+  template <class Yarn>
+  CROSSBEAM_INLINE T vertical_force(const Yarn& y) const {
     return N * s + T(y.kb * y.c0) * t;
   }
-  template <class R>
-  CROSSBEAM_INLINE T k_hh(const YarnConstants<R>& y) const {
-    return T(y.ka) * s * s + N_over_l * c * c + T(y.kb * y.c0 * y.c0);
+  template <class Yarn>
+  CROSSBEAM_INLINE T k_hh(const Yarn& y) const {
+    return k * s * s + N_over_l * c * c + T(y.kb * y.c0 * y.c0);
   }
-  template <class R>
-  CROSSBEAM_INLINE T k_LL(const YarnConstants<R>& y) const {
-    return T(y.ka) * c * c + N_over_l * s * s + T(y.kb * y.s0 * y.s0);
+  template <class Yarn>
+  CROSSBEAM_INLINE T k_LL(const Yarn& y) const {
+    return k * c * c + N_over_l * s * s + T(y.kb * y.s0 * y.s0);
   }
-  template <class R>
-  CROSSBEAM_INLINE T k_Lh(const YarnConstants<R>& y) const {
-    return (T(y.ka) - N_over_l) * c * s - T(y.kb * y.s0 * y.c0);
+  template <class Yarn>
+  CROSSBEAM_INLINE T k_Lh(const Yarn& y) const {
+    return (k - N_over_l) * c * s - T(y.kb * y.s0 * y.c0);
   }
 };
 
@@ -129,25 +135,31 @@ concept UnitCell = requires(const C& cell, T u) {
 enum class Contact { unilateral, bilateral };
 
 /// The energy cell. Stateless: an answer depends on (u1, u2) alone.
-template <class R, Contact ContactKind = Contact::unilateral>
+/// @tparam Law axial law of both yarns, see YarnLaw
+template <class R, Contact ContactKind = Contact::unilateral, class Law = LinearYarn>
+  requires YarnLaw<Law, R>
 class CrossedBeamCell {
  public:
   using Real = R;
+  using Yarn = YarnConstants<R, Law>;
 
+  /// @param warp, weft axial laws
   /// @throws InputError (validate).
-  explicit CrossedBeamCell(const CellParameters<R>& parameters) : parameters_(parameters) {
+  explicit CrossedBeamCell(const CellParameters<R>& parameters, Law warp = {}, Law weft = {})
+      : parameters_(parameters) {
     validate(parameters);
     const R H1 = parameters.warp_height_fraction * parameters.contact_length;
-    yarn1_ = {parameters.warp, H1, parameters.bending_boundary_factor};
-    yarn2_ = {parameters.weft, parameters.contact_length - H1, parameters.bending_boundary_factor};
+    yarn1_ = Yarn(parameters.warp, H1, parameters.bending_boundary_factor, std::move(warp));
+    yarn2_ = Yarn(parameters.weft, parameters.contact_length - H1,
+                  parameters.bending_boundary_factor, std::move(weft));
     k3_ = parameters.contact_modulus * parameters.contact_area / parameters.contact_length;
     largest_elongation_ = CellRange<R>(parameters).largest_elongation();
     has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
   }
 
   [[nodiscard]] const CellParameters<R>& parameters() const { return parameters_; }
-  [[nodiscard]] const YarnConstants<R>& warp() const { return yarn1_; }
-  [[nodiscard]] const YarnConstants<R>& weft() const { return yarn2_; }
+  [[nodiscard]] const Yarn& warp() const { return yarn1_; }
+  [[nodiscard]] const Yarn& weft() const { return yarn2_; }
   [[nodiscard]] R contact_stiffness() const { return k3_; }
   /// Elongations from -L up to this one have an answer, tag [C-12].
   [[nodiscard]] R largest_elongation() const { return largest_elongation_; }
@@ -240,9 +252,10 @@ class CrossedBeamCell {
   /// @param sine sine of the reference angle between the yarns
   [[nodiscard]] R membrane_stiffness_bound(R sine = R(1)) const {
     const R A0 = R(parameters_.symmetry) * yarn1_.L * yarn2_.L * sine;
-    const R warp = (yarn1_.ka + kres()) * yarn1_.L * yarn1_.L / A0;
-    const R weft = (yarn2_.ka + kres()) * yarn2_.L * yarn2_.L / A0;
-    return warp < weft ? weft : warp;
+    const auto bound = [&](const Yarn& y) {
+      return (y.ka * R(y.law.modulus_bound()) + kres()) * y.L * y.L / A0;
+    };
+    return maximum(bound(yarn1_), bound(yarn2_));
   }
 
  private:
@@ -259,7 +272,7 @@ class CrossedBeamCell {
   /// l0^2 - (L + u)^2: square of the height at which the yarn is as long as unstressed; negative when
   /// even the straight yarn is stretched.
   template <class T>
-  CROSSBEAM_INLINE static T spare_height_squared(const YarnConstants<R>& y, const T& u) {
+  CROSSBEAM_INLINE static T spare_height_squared(const Yarn& y, const T& u) {
     return T(y.H * y.H) - u * (T(R(2) * y.L) + u);
   }
 
@@ -366,7 +379,7 @@ class CrossedBeamCell {
   }
 
   CellParameters<R> parameters_{};
-  YarnConstants<R> yarn1_{}, yarn2_{};
+  Yarn yarn1_{}, yarn2_{};
   R k3_{};
   R largest_elongation_{};
   bool has_bending_ = false;

@@ -46,7 +46,7 @@ class SecondOrderCell {
     const T tolerance = T(R(8) * std::numeric_limits<R>::epsilon()) *
                         (T(y1.ka) * magnitude(u1) + T(y2.ka) * magnitude(u2));
     constexpr int limit = 50;
-    auto stable = u1 == u1, converged = u1 == u1;
+    decltype(u1 == u1) stable{}, converged{};
     for (int k = 1; k <= limit; ++k) {
       const Stiffness<T> a(y1, T(kappa_) * out.F1), b(y2, T(kappa_) * out.F2);
       const T det = a.hh * b.hh + k3 * (a.hh + b.hh);

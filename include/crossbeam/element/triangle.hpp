@@ -39,11 +39,10 @@ struct Triangle {
       const std::array<Vec3<R>, corners>& X, const FibreDirections<R>& fibres) {
     const Vec3<R> n = area_vector(X);
     const detail::ElementAxes<R> axes(X[1] - X[0], n);
-    const auto a = axes.project(X[1] - X[0]), b = axes.project(X[2] - X[0]);
-    const R det = a[0] * b[1] - a[1] * b[0];
+    const auto b = axes.project(X[2] - X[0]);
+    const R a = detail::norm(X[1] - X[0]);  // along the first axis
     const auto solve = [&](const std::array<R, 2>& F) {
-      return std::array<R, vectors>{(F[0] * b[1] - F[1] * b[0]) / det,
-                                    (F[1] * a[0] - F[0] * a[1]) / det};
+      return std::array<R, vectors>{(F[0] * b[1] - F[1] * b[0]) / (a * b[1]), F[1] / b[1]};
     };
     return {{{solve(axes.project(fibres.warp)), solve(axes.project(fibres.weft)),
               detail::norm(n) / R(2)}}};

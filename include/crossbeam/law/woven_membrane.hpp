@@ -179,10 +179,10 @@ MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
       const StrainHessian<T> h = law.hessian(state);
       Matrix3<T> H, V;
       H << h.h11, h.h12, h.h13, h.h12, h.h22, h.h23, h.h13, h.h23, h.h33;
-      V << c(0, 0) * c(0, 0), c(0, 1) * c(0, 1), c(0, 0) * c(0, 1),  //
-          c(1, 0) * c(1, 0), c(1, 1) * c(1, 1), c(1, 0) * c(1, 1),   //
-          c(0, 0) * c(1, 0), c(0, 1) * c(1, 1),
-          T(0.5) * (c(0, 0) * c(1, 1) + c(0, 1) * c(1, 0));
+      // The first row of c is (1, 0): Y1 is the warp.
+      V << T(1), T(0), T(0),                                                    //
+          c(1, 0) * c(1, 0), c(1, 1) * c(1, 1), c(1, 0) * c(1, 1),              //
+          c(1, 0), T(0), T(0.5) * c(1, 1);
       out.dS_dE = V.transpose() * H * V;
     }
   } else {

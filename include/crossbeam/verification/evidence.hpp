@@ -1,7 +1,7 @@
 #pragma once
 /// @file
 /// What a verification leaves behind for its report: measurements against tolerances, and plots.
-/// Each is one line of JSON in a log, from which `crossbeam-report` makes the page:
+/// Each is one line of JSON in a log, from which verify/report/report.py makes the page:
 ///
 ///   {"kind": "measurement", "id", "measured", "tolerance", "bound", "pass", "note"}
 ///   {"kind": "plot", "id", "title", "caption", "style", "x", "y", "log_x", "log_y", "curves"}

@@ -1,0 +1,273 @@
+#pragma once
+/// @file
+/// What verify/mutation/instrument.py writes into a copy of the kernel headers: each `a + b` becomes
+/// `a + Add{17} + b`. The first operator returns its left operand half applied, the second applies
+/// it: as written, or as the mutant says whose site 17 is. The operator is the same on both sides,
+/// so precedence and associativity stay as they were. Theory: verify/mutation/README.md.
+
+#include "crossbeam/base/scalar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+#define CROSSBEAM_PROXY [[gnu::always_inline]] inline
+
+namespace crossbeam::mutation {
+
+/// One flag per site; 0: as written, and nobody looks further.
+inline constexpr int most_sites = 20000;
+extern unsigned char flag[most_sites];
+/// Notes that the site was reached. Returns its variant, 0 for as written.
+int reached(int site);
+/// The variant makes no sense for the types at hand.
+void not_applicable();
+void applied(bool differs);
+
+CROSSBEAM_PROXY int variant(int site) {
+  return __builtin_expect(flag[site] != 0, 0) ? reached(site) : 0;
+}
+
+/// Values, not expressions that refer to operands.
+template <class X>
+CROSSBEAM_PROXY auto plain(X&& x) {
+  if constexpr (requires { x.eval(); })
+    return x.eval();
+  else
+    return std::decay_t<X>(std::forward<X>(x));
+}
+template <class X>
+using plain_t = decltype(plain(std::declval<X>()));
+
+template <class V>
+bool differs(const V& a, const V& b) {
+  if constexpr (requires { { a == b } -> std::same_as<bool>; })
+    return !(a == b);
+  else
+    return true;  // lanes, matrices: not looked into
+}
+
+/// `x` as a V, where that is the same kind of thing; nothing is converted to or from text.
+template <class V, class X>
+inline constexpr bool same_kind =
+    !requires(V v) { v.c_str(); } &&
+    (std::is_same_v<V, X> || (std::is_arithmetic_v<X> && !requires(V v) { v.rows(); } &&
+                             !requires(V v) { v.x; } && std::is_convertible_v<X, V>));
+
+template <class V, class X>
+V mutant(const V& original, const X& x) {
+  if constexpr (same_kind<V, plain_t<const X&>>) {
+    const V changed(plain(x));
+    applied(differs(original, changed));
+    return changed;
+  } else {
+    not_applicable();
+    return original;
+  }
+}
+/// One operand is left out: the right one where the left one has the type of the result.
+template <class V, class L, class R>
+V dropped(const V& original, const L& l, const R& r) {
+  if constexpr (same_kind<V, plain_t<const L&>>)
+    return mutant(original, l);
+  else
+    return mutant(original, r);
+}
+
+template <class Op, class L>
+struct Half {
+  const L& l;
+  int site;
+};
+
+/// A proxy for the binary operator `op`: variant 1 is `first`, variant 2 is `second`, expressions in
+/// l, r and the original value v.
+#define CROSSBEAM_MUTATION(Name, op, first, second)                                               \
+  struct Name {                                                                                  \
+    int site;                                                                                    \
+    template <class V, class L, class R>                                                         \
+    [[gnu::noinline, gnu::cold]] static V changed(int which, V v, L l, R r) {                    \
+      if (which == 1) {                                                                          \
+        if constexpr (requires { first; })                                                       \
+          return first;                                                                          \
+      } else {                                                                                   \
+        if constexpr (requires { second; })                                                      \
+          return second;                                                                         \
+      }                                                                                          \
+      not_applicable();                                                                          \
+      return v;                                                                                  \
+    }                                                                                            \
+    template <class L>                                                                           \
+    CROSSBEAM_PROXY friend Half<Name, L> operator op(const L& l, Name proxy) {                  \
+      return {l, proxy.site};                                                                    \
+    }                                                                                            \
+  };                                                                                             \
+  template <class L, class R>                                                                    \
+  CROSSBEAM_PROXY auto operator op(Half<Name, L>&& half, const R& r) {                          \
+    auto v = plain(half.l op r);                                                                 \
+    if (const int which = variant(half.site))                                                    \
+      return Name::template changed<decltype(v), std::decay_t<const L&>, std::decay_t<const R&>>(which, v, half.l, r);                     \
+    return v;                                                                                    \
+  }
+
+CROSSBEAM_MUTATION(Add, +, mutant(v, l - r), dropped(v, l, r))
+CROSSBEAM_MUTATION(Sub, -, mutant(v, l + r), dropped(v, l, r))
+CROSSBEAM_MUTATION(Mul, *, mutant(v, l / r), dropped(v, l, r))
+CROSSBEAM_MUTATION(Div, /, mutant(v, l * r), dropped(v, l, r))
+CROSSBEAM_MUTATION(Less, <, mutant(v, l <= r), mutant(v, l >= r))
+CROSSBEAM_MUTATION(LessEqual, <=, mutant(v, l < r), mutant(v, l > r))
+CROSSBEAM_MUTATION(Greater, >, mutant(v, l >= r), mutant(v, l <= r))
+CROSSBEAM_MUTATION(GreaterEqual, >=, mutant(v, l > r), mutant(v, l < r))
+CROSSBEAM_MUTATION(Equal, ==, mutant(v, l != r), mutant(v, l != r))
+CROSSBEAM_MUTATION(NotEqual, !=, mutant(v, l == r), mutant(v, l == r))
+CROSSBEAM_MUTATION(And, &&, mutant(v, l || r), mutant(v, l))
+CROSSBEAM_MUTATION(Or, ||, mutant(v, l && r), mutant(v, l))
+// In the head of a for loop: one turn less, and none. (One more would read beyond arrays.)
+CROSSBEAM_MUTATION(LoopLess, <, mutant(v, l + 1 < r), mutant(v, false))
+CROSSBEAM_MUTATION(LoopLessEqual, <=, mutant(v, l < r), mutant(v, false))
+CROSSBEAM_MUTATION(LoopGreaterEqual, >=, mutant(v, l > r), mutant(v, false))
+#undef CROSSBEAM_MUTATION
+
+// Prefix operators, written with ->*, which binds tighter than every binary operator.
+template <class V, class X>
+[[gnu::noinline, gnu::cold]] V changed_to(V v, X x) {
+  return mutant(v, x);
+}
+struct Minus {
+  int site;
+};
+template <class X>
+CROSSBEAM_PROXY auto operator->*(Minus proxy, const X& x) {
+  auto v = plain(-x);
+  if (variant(proxy.site)) return changed_to<decltype(v), X>(v, x);
+  return v;
+}
+struct Not {
+  int site;
+};
+template <class X>
+CROSSBEAM_PROXY auto operator->*(Not proxy, const X& x) {
+  auto v = plain(!x);
+  if (variant(proxy.site)) {
+    if constexpr (std::is_same_v<decltype(v), bool>)
+      return changed_to<bool, bool>(v, static_cast<bool>(x));
+    else
+      return changed_to<decltype(v), X>(v, x);
+  }
+  return v;
+}
+/// `x.transpose() ->* Transposed{7}`
+struct Transposed {
+  int site;
+};
+template <class X>
+CROSSBEAM_PROXY auto operator->*(const X& x, Transposed proxy) {
+  auto v = plain(x);
+  if (variant(proxy.site)) {
+    if constexpr (int(X::RowsAtCompileTime) == int(X::ColsAtCompileTime))
+      return changed_to<decltype(v), decltype(v)>(v, plain(x.transpose()));
+    not_applicable();
+  }
+  return v;
+}
+/// `x += Increment{7} *= y`
+struct Increment {
+  int site;
+};
+template <class Y>
+CROSSBEAM_PROXY auto operator*=(Increment proxy, const Y& y) {
+  auto v = plain(y);
+  if (const int which = variant(proxy.site)) {
+    const decltype(v) none = plain(v - v);
+    return changed_to<decltype(v), decltype(v)>(v, which == 1 ? plain(none - v) : none);
+  }
+  return v;
+}
+
+template <class X>
+CROSSBEAM_PROXY X constant(int site, X as_written, X changed) {
+  if (variant(site)) {
+    applied(true);
+    return changed;
+  }
+  return as_written;
+}
+
+/// Another variable of the same type.
+template <class X, class Y>
+CROSSBEAM_PROXY decltype(auto) twin(int site, X& x, [[maybe_unused]] Y& y) {
+  if constexpr (std::is_same_v<X, Y>) {
+    if (variant(site)) {
+      applied(differs(x, y));
+      return static_cast<X&>(y);
+    }
+  } else {
+    if (variant(site)) not_applicable();
+  }
+  return static_cast<X&>(x);
+}
+
+/// Functions: `maximum(a, b)` becomes `Maximum{7}(a, b)`.
+#define CROSSBEAM_MUTATION(Name, as_written, changed)                                             \
+  struct Name {                                                                                  \
+    int site;                                                                                    \
+    template <class A, class... B>                                                               \
+    CROSSBEAM_PROXY auto operator()(const A& a, const B&... b) const {                          \
+      using namespace std_and_crossbeam;                                                         \
+      auto v = plain(as_written(a, b...));                                                       \
+      if (variant(site)) {                                                                       \
+        if constexpr (requires { changed(a, b...); })                                            \
+          return changed_to<decltype(v), decltype(v)>(v, decltype(v)(changed(a, b...)));         \
+        not_applicable();                                                                        \
+      }                                                                                          \
+      return v;                                                                                  \
+    }                                                                                            \
+  };
+namespace std_and_crossbeam {
+using crossbeam::all;
+using crossbeam::any;
+using crossbeam::cross;
+using crossbeam::magnitude;
+using crossbeam::maximum;
+using crossbeam::minimum;
+using crossbeam::select;
+using std::abs;
+using std::cbrt;
+using std::cos;
+using std::hypot;
+using std::sin;
+using std::sqrt;
+
+template <class M, class A, class B>
+CROSSBEAM_PROXY auto other_choice(const M& m, const A& a, const B& b) {
+  return select(m, b, a);
+}
+template <class A, class... B>
+CROSSBEAM_PROXY A argument(const A& a, const B&...) {
+  return a;
+}
+template <class A>
+CROSSBEAM_PROXY auto crossed_back(const A& a, const A& b) {
+  return cross(b, a);
+}
+}  // namespace std_and_crossbeam
+CROSSBEAM_MUTATION(Maximum, maximum, minimum)
+CROSSBEAM_MUTATION(Minimum, minimum, maximum)
+CROSSBEAM_MUTATION(StdMax, std::max, std::min)
+CROSSBEAM_MUTATION(Select, select, other_choice)
+CROSSBEAM_MUTATION(Cos, cos, sin)
+CROSSBEAM_MUTATION(Sin, sin, cos)
+CROSSBEAM_MUTATION(Sqrt, sqrt, argument)
+CROSSBEAM_MUTATION(Cbrt, cbrt, argument)
+CROSSBEAM_MUTATION(Abs, abs, argument)
+CROSSBEAM_MUTATION(Hypot, hypot, argument)
+CROSSBEAM_MUTATION(Magnitude, magnitude, argument)
+CROSSBEAM_MUTATION(Cross, cross, crossed_back)
+CROSSBEAM_MUTATION(All, all, any)
+CROSSBEAM_MUTATION(Any, any, all)
+#undef CROSSBEAM_MUTATION
+
+}  // namespace crossbeam::mutation
