@@ -314,4 +314,70 @@ TEST_CASE("V-CELL-27 the reading of Table 1: 17.6 mm^2 is the contact area, and 
                 verify::Bound::lower);
 }
 
+namespace {
+
+/// Fibres that straighten before they carry: W = ka x^3 / (2 (x + a)), x = max(e, 0), a = toe l0.
+struct ToeYarn {
+  double toe = 0.004;
+  template <class T>
+  T energy(const T& e, const T& l0) const {
+    const T x = crossbeam::maximum(e, T(0)), s = x + T(toe) * l0;
+    return x * x * x / (T(2) * s);
+  }
+  template <class T>
+  T tension(const T& e, const T& l0) const {
+    const T x = crossbeam::maximum(e, T(0)), a = T(toe) * l0, s = x + a;
+    return x * x * (T(2) * x + T(3) * a) / (T(2) * s * s);
+  }
+  template <class T>
+  T modulus(const T& e, const T& l0) const {
+    const T x = crossbeam::maximum(e, T(0)), a = T(toe) * l0, s = x + a;
+    return x * (x * x + T(3) * a * s) / (s * s * s);
+  }
+  [[nodiscard]] static double modulus_bound() { return 1.25; }  // not the least one, on purpose
+};
+
+}  // namespace
+
+TEST_CASE("V-CELL-33 yarns with a law of their own: two frozen triangles on a rigid contact") {
+  using ToeCell = crossbeam::CrossedBeamCell<double, crossbeam::Contact::unilateral, ToeYarn>;
+  Parameters p = verify::table_1();
+  p.contact_modulus = 1e15;
+  const ToeYarn law, other{0.02};
+  const ToeCell cell(p, law, law);
+  const auto& y = cell.warp();
+  const double EA = 35.4, L = 2.5, H = 0.4, l0 = std::hypot(L, H);
+  verify::Worst forces, energies, tangents;
+  for (double strain : {0.001, 0.003, 0.01, 0.02, 0.05}) {
+    const double u = strain * L, l = std::hypot(L + u, H), e = l - l0, t = -y.s0 * u;
+    const double N = EA / l0 * law.tension(e, l0), c = (L + u) / l, s = H / l;
+    const double expected = N * c + y.kb * y.s0 * y.s0 * u;
+    const auto at = cell.solve(u, u);
+    REQUIRE(at.status == crossbeam::CellStatus::converged);
+    REQUIRE(expected > 0);
+    REQUIRE(N < 0.99 * EA / l0 * e);  // the toe is there
+    forces.see(std::abs(at.forces.F1 / expected - 1), strain);
+    forces.see(std::abs(at.forces.F2 / expected - 1), strain);
+    const double U = 2 * (EA / l0 * law.energy(e, l0) + y.kb * t * t / 2);
+    energies.see(std::abs(cell.energy(u, u, at) / U - 1), strain);
+    const auto K = cell.tangent(u, u, at);
+    const double both = EA / l0 * law.modulus(e, l0) * c * c + N / l * s * s + y.kb * y.s0 * y.s0;
+    tangents.see(std::abs((K.K11 + K.K12) / both - 1), strain);
+  }
+  // The hand formulas cancel l - l0, three digits of it at the least strain, squared in the toe.
+  forces.claim("V-CELL-33", 1e-11, "forces, relative");
+  energies.claim("V-CELL-33", 1e-11, "energy, relative");
+  tangents.claim("V-CELL-33", 1e-11, "balanced stiffness, relative");
+  // The bound is that of the law, in the yarn whose law it is.
+  const crossbeam::CrossedBeamCell<double> linear(p);
+  verify::claim("V-CELL-33",
+                std::abs(cell.membrane_stiffness_bound() / linear.membrane_stiffness_bound() - 1.25),
+                1e-15, "bound of the stiffness over that of linear yarns, off 1.25");
+  // A softer weft carries less than the warp at the same strain.
+  const auto unequal = ToeCell(p, law, other).solve(0.02 * L, 0.02 * L);
+  REQUIRE(unequal.status == crossbeam::CellStatus::converged);
+  verify::claim("V-CELL-33", unequal.forces.F1 / unequal.forces.F2, 1.1,
+                "warp force over weft force, toes of 0.4 and 2 %", verify::Bound::lower);
+}
+
 TEST_SUITE_END();
