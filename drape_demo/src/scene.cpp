@@ -123,7 +123,8 @@ std::string first_known(const std::vector<std::string>& places) {
 void check_polynomial(const ShearInput& shear, const Locator& where) {
   const std::string field = "fabric.shear.coefficients";
   const std::string rule = fmt::format(
-      "G(g) = sum of coefficients[k] g^k must be finite and >= 0 for every shear angle g from 0 to {} rad",
+      "G(g) = sum of coefficients[k] g^k must be finite and >= 0 for every shear angle g from 0 to "
+      "{} rad",
       largest_shear);
   if (shear.coefficients.empty())
     throw InputError(field, "[]", "kN/mm",
@@ -519,10 +520,12 @@ DrapeCase load_scene(const std::filesystem::path& file) {
 namespace {
 
 [[noreturn]] void refuse_text(const std::string& source, std::size_t line, const std::string& why) {
-  throw InputError("scene file", fmt::format("{}:{}", source, line), "", "valid TOML (" + why + ")");
+  throw InputError("scene file", fmt::format("{}:{}", source, line), "",
+                   "valid TOML (" + why + ")");
 }
 
-/// TOML has no control characters but the tab and ends of line; toml++ 3.3 does not refuse them all.
+/// TOML has no control characters but the tab and ends of line; toml++ 3.3 does not refuse all of
+/// the others.
 void refuse_control_characters(std::string_view text, const std::string& source) {
   std::size_t line = 1;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -551,8 +554,9 @@ std::size_t unexpected_line(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i)
     if (text[i] == '\n') ends.push_back(i + 1);
   ends.push_back(text.size());
-  const auto first = std::partition_point(
-      ends.begin(), ends.end(), [&](std::size_t end) { return !is_unexpected(text.substr(0, end)); });
+  const auto first = std::partition_point(ends.begin(), ends.end(), [&](std::size_t end) {
+    return !is_unexpected(text.substr(0, end));
+  });
   return static_cast<std::size_t>(first - ends.begin()) + 1;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 /// @file
 /// toml++ with its assertions as exceptions. Release 3.3 asserts what depends on the text it reads
-/// (no brace after a comma in a list, for one): the program would stop, or with NDEBUG go on as if it
-/// were not so.
+/// (no brace after a comma in a list, for one): the program would stop, or with NDEBUG go on as if
+/// it were not so.
 
 #include <stdexcept>
 
@@ -25,7 +25,7 @@ struct UnexpectedText : std::logic_error {
 #endif
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
-#define TOML_ASSERT(condition)      \
+#define TOML_ASSERT(condition)        \
   ((condition) ? static_cast<void>(0) \
                : throw ::crossbeam::drape::UnexpectedText("not expected here: !(" #condition ")"))
 #include <toml++/toml.h>

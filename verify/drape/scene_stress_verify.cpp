@@ -22,8 +22,7 @@ std::vector<std::string> seeds() {
       "1e-4]\n",
       "[blank]\nhalf_width = 3.0\n",
       "integration.precision = 'float'\nfabric.cell.warp.length = 1e-3\n"};
-  for (const auto& entry :
-       std::filesystem::directory_iterator(crossbeam::drape::scene_folder())) {
+  for (const auto& entry : std::filesystem::directory_iterator(crossbeam::drape::scene_folder())) {
     std::ifstream file(entry.path(), std::ios::binary);
     out.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   }
@@ -35,11 +34,38 @@ void mutate(std::string& text, verify::Random& random) {
   const auto place = [&] {
     return static_cast<std::size_t>(random.uniform(0, static_cast<double>(text.size() + 1)));
   };
-  const std::vector<std::string> pieces{
-      "nan", "-inf", "1e400", "9007199254740993", "9223372036854775807", "-9223372036854775808",
-      "99999999999999999999", "0x7fffffffffffffff", "1e-320", "-0.0", "1e150", "'", "\"\"\"", "[[",
-      "]]", "{", "}", ".", "=", "\n[fabric]\n", "\r", "\xff", "\xef\xbb\xbf", "#", ",", "true",
-      "1979-05-27T07:32:00Z", "\\u0000", "a.b.c.d = 1\n", "[fabric.cell]\n", "inf", "0"};
+  const std::vector<std::string> pieces{"nan",
+                                        "-inf",
+                                        "1e400",
+                                        "9007199254740993",
+                                        "9223372036854775807",
+                                        "-9223372036854775808",
+                                        "99999999999999999999",
+                                        "0x7fffffffffffffff",
+                                        "1e-320",
+                                        "-0.0",
+                                        "1e150",
+                                        "'",
+                                        "\"\"\"",
+                                        "[[",
+                                        "]]",
+                                        "{",
+                                        "}",
+                                        ".",
+                                        "=",
+                                        "\n[fabric]\n",
+                                        "\r",
+                                        "\xff",
+                                        "\xef\xbb\xbf",
+                                        "#",
+                                        ",",
+                                        "true",
+                                        "1979-05-27T07:32:00Z",
+                                        "\\u0000",
+                                        "a.b.c.d = 1\n",
+                                        "[fabric.cell]\n",
+                                        "inf",
+                                        "0"};
   const double kind = random.uniform(0, 4);
   if (kind < 1 && !text.empty()) {
     text[place() % text.size()] = static_cast<char>(static_cast<int>(random.uniform(0, 256)));
@@ -47,17 +73,18 @@ void mutate(std::string& text, verify::Random& random) {
     const std::size_t at = place();
     text.erase(at, static_cast<std::size_t>(random.uniform(1, 30)));
   } else if (kind < 3) {
-    text.insert(place(),
-                pieces[static_cast<std::size_t>(random.uniform(0, static_cast<double>(pieces.size())))]);
+    text.insert(
+        place(),
+        pieces[static_cast<std::size_t>(random.uniform(0, static_cast<double>(pieces.size())))]);
   } else {
     // The value of some line.
     const std::size_t equals = text.find("= ", place());
     if (equals == std::string::npos) return;
     const std::size_t end = text.find_first_of("#\n", equals);
-    text.replace(equals + 2, end == std::string::npos ? end : end - equals - 2,
-                 pieces[static_cast<std::size_t>(
-                     random.uniform(0, static_cast<double>(pieces.size())))] +
-                     " ");
+    text.replace(
+        equals + 2, end == std::string::npos ? end : end - equals - 2,
+        pieces[static_cast<std::size_t>(random.uniform(0, static_cast<double>(pieces.size())))] +
+            " ");
   }
 }
 

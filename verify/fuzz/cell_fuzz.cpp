@@ -1,4 +1,5 @@
-// libFuzzer target: properties.hpp. A broken promise ends the program, and libFuzzer keeps the input.
+// libFuzzer target: properties.hpp. A broken promise ends the program, and libFuzzer keeps the
+// input.
 
 #include "fuzz/properties.hpp"
 

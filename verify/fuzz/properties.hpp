@@ -44,12 +44,35 @@ template <class... Parts>
 enum class Outcome { answered, refused, no_answer };
 
 /// Numbers no formula likes, in [0, inf] and NaN.
-inline constexpr std::array special_numbers{
-    0.0,   std::numeric_limits<double>::denorm_min(),
-    1e-310, std::numeric_limits<double>::min(),
-    1e-300, 1e-200, 1e-150, 1e-100, 1e-75, 1e-50, 1e-30, 1e-16, 1e-8, 0.1, 1.0, 2.0, 1e3, 1e8, 1e16,
-    1e30,  1e50,   1e75,   1e100,  1e150,  1e200,  1e300, std::numeric_limits<double>::max(),
-    std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()};
+inline constexpr std::array special_numbers{0.0,
+                                            std::numeric_limits<double>::denorm_min(),
+                                            1e-310,
+                                            std::numeric_limits<double>::min(),
+                                            1e-300,
+                                            1e-200,
+                                            1e-150,
+                                            1e-100,
+                                            1e-75,
+                                            1e-50,
+                                            1e-30,
+                                            1e-16,
+                                            1e-8,
+                                            0.1,
+                                            1.0,
+                                            2.0,
+                                            1e3,
+                                            1e8,
+                                            1e16,
+                                            1e30,
+                                            1e50,
+                                            1e75,
+                                            1e100,
+                                            1e150,
+                                            1e200,
+                                            1e300,
+                                            std::numeric_limits<double>::max(),
+                                            std::numeric_limits<double>::infinity(),
+                                            std::numeric_limits<double>::quiet_NaN()};
 
 /// Reads numbers off a string of bytes; zeros when it has ended.
 class Bytes {
@@ -152,7 +175,9 @@ struct LongYarn {
   long double L, H, l0, ka, kb, kres;
   LongYarn(const crossbeam::CellParameters<double>& p, const crossbeam::YarnParameters<double>& y,
            long double share)
-      : L(y.length), H(share * p.contact_length), l0(std::sqrt(L * L + H * H)),
+      : L(y.length),
+        H(share * p.contact_length),
+        l0(std::sqrt(L * L + H * H)),
         ka(static_cast<long double>(y.youngs_modulus) * y.cross_section / l0),
         kb(static_cast<long double>(p.bending_boundary_factor) * y.youngs_modulus *
            y.second_moment_of_area / (l0 * l0 * l0)),
@@ -191,16 +216,15 @@ inline double imbalance(const crossbeam::CellParameters<double>& p, double u1, d
   const Long gap = Long(f.w1) + f.w2 + f.q / k3;
   // The branch on which the cell is stable: heights that are not negative, on the rising side.
   const Long stiffness = force / length;
-  const Long unstable =
-      unilateral ? std::max({-a.slope / stiffness, -b.slope / stiffness,
-                             -(warp.H + f.w1) / length, -(weft.H + f.w2) / length})
-                 : Long(0);
+  const Long unstable = unilateral
+                            ? std::max({-a.slope / stiffness, -b.slope / stiffness,
+                                        -(warp.H + f.w1) / length, -(weft.H + f.w2) / length})
+                            : Long(0);
   const Long contact = unilateral && !(f.q > 0) ? std::max(-gap, Long(0)) : std::abs(gap);
-  return static_cast<double>(std::max({std::abs(a.vertical - f.q) / force,
-                                       std::abs(b.vertical - f.q) / force,
-                                       std::abs(a.horizontal - f.F1) / force,
-                                       std::abs(b.horizontal - f.F2) / force, contact / length,
-                                       unstable}));
+  return static_cast<double>(
+      std::max({std::abs(a.vertical - f.q) / force, std::abs(b.vertical - f.q) / force,
+                std::abs(a.horizontal - f.F1) / force, std::abs(b.horizontal - f.F2) / force,
+                contact / length, unstable}));
 }
 
 /// Roundings of a converged answer. Errors of a factor are what is looked for here; digits are the
@@ -223,8 +247,8 @@ Outcome check_cell(const Cell& cell, double u1, double u2) {
   if (!(u1 > -p.warp.length && u2 > -p.weft.length)) broken("a yarn of no length", where());
   if (!finite(s.forces)) broken("silent", where());
   if constexpr (requires { cell.energy(u1, u2, s); }) {
-    const double off = imbalance(p, u1, u2, s.forces,
-                                 std::is_same_v<Cell, crossbeam::CrossedBeamCell<double>>);
+    const double off =
+        imbalance(p, u1, u2, s.forces, std::is_same_v<Cell, crossbeam::CrossedBeamCell<double>>);
     if (!(off <= allowed_imbalance)) broken("imbalance", off, where());
     const double W = cell.energy(u1, u2, s);
     if (!(W >= 0 && std::isfinite(W))) broken("energy", W, where());
@@ -269,15 +293,15 @@ Outcome check_law(const Law& law, const crossbeam::Matrix2<double>& E, bool shea
   };
   if (!r.S.allFinite()) broken("silent: S", r.S, where());
   if constexpr (has_tangent) {
-    if (!(std::isfinite(r.energy) && (r.energy >= 0 || !shear_hardens))) broken("energy", r.energy, where());
+    if (!(std::isfinite(r.energy) && (r.energy >= 0 || !shear_hardens)))
+      broken("energy", r.energy, where());
     if (!r.dS_dE.allFinite()) broken("tangent", r.dS_dE, where());
   }
   // A metric that no two vectors have, and not by rounding: the strain cannot be.
   const long double C11 = 1 + 2 * static_cast<long double>(E(0, 0)),
                     C22 = 1 + 2 * static_cast<long double>(E(1, 1)), C12 = 2.0L * E(0, 1);
   const long double rounding = 1e-12L * (1 + C11 * C11 + C22 * C22 + C12 * C12);
-  if (!(C11 + C22 > 0 && C11 * C22 > C12 * C12 - rounding))
-    broken("no such strain", where());
+  if (!(C11 + C22 > 0 && C11 * C22 > C12 * C12 - rounding)) broken("no such strain", where());
   return Outcome::answered;
 }
 
@@ -288,10 +312,12 @@ inline Outcome check_law(std::span<const std::uint8_t> data) {
   const bool second_order = bytes.below(8) == 0;
   const double delta = bytes.below(8) == 0 ? bytes.any() : bytes.uniform(0.3, 2.8);
   const YarnWidth width = bytes.below(2) == 0 ? YarnWidth::corrected : YarnWidth::literal;
-  const CellParameters<double> p = bytes.below(2) == 0 ? CellParameters<double>{}
-                                                       : parameters(bytes);
+  const CellParameters<double> p =
+      bytes.below(2) == 0 ? CellParameters<double>{} : parameters(bytes);
   Matrix2<double> E;
-  const auto strain = [&] { return bytes.below(8) == 0 ? bytes.any() : bytes.uniform(-0.55, 0.55); };
+  const auto strain = [&] {
+    return bytes.below(8) == 0 ? bytes.any() : bytes.uniform(-0.55, 0.55);
+  };
   E(0, 0) = strain();
   E(1, 1) = strain();
   E(0, 1) = E(1, 0) = strain();
@@ -300,10 +326,9 @@ inline Outcome check_law(std::span<const std::uint8_t> data) {
     const auto check = [&](const auto& shear, bool hardens = true) {
       using Shear = std::decay_t<decltype(shear)>;
       if (second_order)
-        return check_law(
-            WovenMembrane<SecondOrderCell<double>, Shear>(SecondOrderCell<double>(p), shear, angle,
-                                                          width),
-            E, hardens);
+        return check_law(WovenMembrane<SecondOrderCell<double>, Shear>(SecondOrderCell<double>(p),
+                                                                       shear, angle, width),
+                         E, hardens);
       return check_law(WovenMembrane<CrossedBeamCell<double>, Shear>(CrossedBeamCell<double>(p),
                                                                      shear, angle, width),
                        E, hardens);

@@ -21,8 +21,8 @@ inline bool has_place(const std::string& text, const std::string& file) {
   return false;
 }
 
-/// All that a case is, for comparison: every field by name with its value.
-class FieldText {
+/// Every field of an accepted case is admissible.
+class FieldCheck {
  public:
   void enter(const char* name) { path_.enter(name); }
   void leave() { path_.leave(); }
@@ -30,30 +30,24 @@ class FieldText {
   void real(const char* name, const T& value, const char*, const crossbeam::drape::Range& range) {
     if (!(std::isfinite(value) && range.contains(value)))
       broken("an accepted field out of range:", path_.name(name), value);
-    ++fields;
   }
   template <class T>
   void integer(const char* name, const T& value, const char*,
                const crossbeam::drape::Range& range) {
     if (!range.contains(static_cast<double>(value)))
       broken("an accepted field out of range:", path_.name(name), value);
-    ++fields;
   }
   template <class E>
   void choice(const char* name, const E& value) {
     if (std::string(crossbeam::drape::name_of(value)) == "unknown")
       broken("an accepted choice without a name:", path_.name(name));
-    ++fields;
   }
-  void flag(const char*, const bool&) { ++fields; }
-  void text(const char*, const std::string&) { ++fields; }
+  void flag(const char*, const bool&) {}
+  void text(const char*, const std::string&) {}
   void list(const char* name, const std::vector<double>& values, const char*) {
     for (double value : values)
       if (!std::isfinite(value)) broken("an accepted list that is not finite:", path_.name(name));
-    ++fields;
   }
-
-  int fields = 0;
 
  private:
   crossbeam::drape::FieldPath path_;
@@ -90,7 +84,7 @@ inline Outcome check_scene(std::string_view text) {
     if (!has_place(error.what(), file)) broken("refused without a line:", error.what());
     return Outcome::refused;
   }
-  FieldText all;
+  FieldCheck all;
   visit_fields(std::as_const(scene), all);
   // What the drape builds of it must not be refused any more.
   try {

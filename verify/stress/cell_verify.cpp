@@ -124,8 +124,9 @@ TEST_CASE("V-STRESS-01 in any units a cell has the same answer, or is refused") 
   verify::claim("V-STRESS-01", static_cast<double>(wrong), 0,
                 "answers that differ from those in kN, mm in any bit, forces 1e+-300, lengths "
                 "1e+-150");
-  verify::claim("V-STRESS-01", static_cast<double>(refused_near), 0,
-                "fabrics refused although their forces are within 1e+-60 and lengths within 1e+-22");
+  verify::claim(
+      "V-STRESS-01", static_cast<double>(refused_near), 0,
+      "fabrics refused although their forces are within 1e+-60 and lengths within 1e+-22");
 }
 
 TEST_CASE("V-STRESS-02 packs, float and dual numbers under any input: finite or a status") {
@@ -150,9 +151,8 @@ TEST_CASE("V-STRESS-02 packs, float and dual numbers under any input: finite or 
       const double a = u1[l], b = u2[l];
       tell(a > -p.warp.length && b > -p.weft.length && fuzz::finite(f), type, p);
       // The float cell knows the parameters as floats.
-      const double off =
-          fuzz::imbalance(CellParameters<double>(cell.parameters().template cast<double>()), a, b,
-                          f, true);
+      const double off = fuzz::imbalance(
+          CellParameters<double>(cell.parameters().template cast<double>()), a, b, f, true);
       tell(off <= (std::is_same_v<real_t<T>, float> ? 1e-3 : fuzz::allowed_imbalance),
            type + " imbalance " + std::to_string(off) + " at " + std::to_string(a) + ", " +
                std::to_string(b),

@@ -40,8 +40,8 @@ double component(verify::Random& random, double scale) {
 }
 
 Base<double> base(verify::Random& random) {
-  const double scale = std::exp2(std::floor(random.uniform(-600, 600)) *
-                                 (random.uniform(0, 1) < 0.5 ? 1 : 0));
+  const double scale =
+      std::exp2(std::floor(random.uniform(-600, 600)) * (random.uniform(0, 1) < 0.5 ? 1 : 0));
   Base<double> A;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 2; ++j) A(i, j) = component(random, scale);
@@ -53,9 +53,9 @@ Base<double> base(verify::Random& random) {
 TEST_SUITE_BEGIN("stress");
 
 TEST_CASE("V-STRESS-03 every law under every strain: finite, or a status") {
-  const std::vector<double> values{0,    -0.0,  1e-310, -1e-310, 1e-16, -1e-16, 0.02, -0.02, 0.3,
-                                   -0.3, -0.49, -0.5,   -0.6,    1,     1e16,   -1e16, 1e75, 1e150,
-                                   1e300, -1e300, not_a_number, inf, -inf};
+  const std::vector<double> values{0,    -0.0,  1e-310, -1e-310, 1e-16,        -1e-16, 0.02, -0.02,
+                                   0.3,  -0.3,  -0.49,  -0.5,    -0.6,         1,      1e16, -1e16,
+                                   1e75, 1e150, 1e300,  -1e300,  not_a_number, inf,    -inf};
   long broken = 0, answered = 0, no_answer = 0, missed = 0;
   for (const int degrees : {60, 90, 150})
     verify::for_each_shear<double>(degrees, [&](const std::string& name, const auto& shear) {
@@ -90,7 +90,8 @@ TEST_CASE("V-STRESS-03 every law under every strain: finite, or a status") {
       };
       for (const double none : {-0.5, -0.6, -1e16, not_a_number, inf, -inf})
         missed += status(none, 0, 0) == CellStatus::converged;
-      for (const double shear_strain : {0.5, -0.5, 0.6, 1e16, not_a_number, inf})  // yarns on one line
+      for (const double shear_strain :
+           {0.5, -0.5, 0.6, 1e16, not_a_number, inf})  // yarns on one line
         missed += status(0, 0, shear_strain) == CellStatus::converged;
       missed += status(0.01, 0.01, 0.02) != CellStatus::converged;
     });
@@ -167,8 +168,8 @@ TEST_CASE("V-STRESS-04 kinematics: refused, or right and finite") {
     const auto beta = fibre_strain<double>(E, fibre_from_cartesian(FibreAngle<double>(1)));
     bad += !(std::isfinite(beta.b11) && std::isfinite(beta.b22) && std::isfinite(beta.b12));
     bad += !(metric(A).allFinite() && convected_strain(A, A).isZero() &&
-             convected_strain_from_increment(A, A).allFinite() &&
-             to_cartesian(E, E).allFinite() && surface_gradient(A, E).allFinite());
+             convected_strain_from_increment(A, A).allFinite() && to_cartesian(E, E).allFinite() &&
+             surface_gradient(A, E).allFinite());
   }
   claim("V-STRESS-04", static_cast<double>(bad), 0,
         "fibre angles, arcsines, stretches and strains that are not finite where they have to be");

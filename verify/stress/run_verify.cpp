@@ -58,7 +58,8 @@ struct End {
 };
 
 template <class Run>
-End advance(Run& run, int steps, const std::function<void(int, NodalState<double>&)>& disturb = {}) {
+End advance(Run& run, int steps,
+            const std::function<void(int, NodalState<double>&)>& disturb = {}) {
   End end;
   EnergyLedger row;
   double first = 0, size = 0;
@@ -76,8 +77,10 @@ End advance(Run& run, int steps, const std::function<void(int, NodalState<double
     end.stopped = error.what();
   }
   Points velocities;
-  for (int n = 0; n < run.state().node_count; ++n) velocities.push_back(eigen(run.state().v.get(n)));
-  end.finite = all_finite(positions(run)) && all_finite(velocities) && std::isfinite(row.residual());
+  for (int n = 0; n < run.state().node_count; ++n)
+    velocities.push_back(eigen(run.state().v.get(n)));
+  end.finite =
+      all_finite(positions(run)) && all_finite(velocities) && std::isfinite(row.residual());
   return end;
 }
 
@@ -91,7 +94,8 @@ bool names_its_reason(const std::string& text) {
 
 TEST_SUITE_BEGIN("stress");
 
-TEST_CASE("V-STRESS-07 elements that collapse or turn over: finite forces, or none that pass for it") {
+TEST_CASE(
+    "V-STRESS-07 elements that collapse or turn over: finite forces, or none that pass for it") {
   VERIFY_RANDOM(random, 7007);
   long silent = 0, stopped = 0, checked = 0;
   verify::Worst mirrored, rates;
@@ -146,7 +150,9 @@ TEST_CASE("V-STRESS-07 elements that collapse or turn over: finite forces, or no
     const std::vector<std::function<Eigen::Vector3d(const Eigen::Vector3d&)>> maps{
         [](const Eigen::Vector3d&) { return Eigen::Vector3d(0, 0, 0); },
         [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x(), 0, 0); },
-        [](const Eigen::Vector3d& p) { return Eigen::Vector3d(std::cos(0.3) * p.x(), std::sin(0.3) * p.x(), 0); },
+        [](const Eigen::Vector3d& p) {
+          return Eigen::Vector3d(std::cos(0.3) * p.x(), std::sin(0.3) * p.x(), 0);
+        },
         [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x(), p.x(), 0); },
         [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x() + p.y(), 0, 0); },
         [](const Eigen::Vector3d& p) -> Eigen::Vector3d { return 1e-300 * p; },
@@ -182,7 +188,8 @@ TEST_CASE("V-STRESS-07 elements that collapse or turn over: finite forces, or no
   // The same products in the same order, but for their signs.
   mirrored.claim("V-STRESS-07", 1e-13, "energy and forces of turned-over elements, mirrored");
   // Central differences with steps of 1e-5 mm at elements of 3 mm.
-  rates.claim("V-STRESS-07", 1e-6, "forces against the energy with a node beyond the opposite edge");
+  rates.claim("V-STRESS-07", 1e-6,
+              "forces against the energy with a node beyond the opposite edge");
 }
 
 TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and says why") {
@@ -257,8 +264,9 @@ TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and
     const double fine = drift(blow, 0.1, curve), rough = drift(blow, 0.25, coarse);
     plot.curves.push_back(curve);
     claim("V-STRESS-08", fine, 5e-3,
-          std::string(blow.name) + ": largest change of the ledger's residual over the energies, "
-                                   "steps of a tenth of the critical one");
+          std::string(blow.name) +
+              ": largest change of the ledger's residual over the energies, "
+              "steps of a tenth of the critical one");
     claim("V-STRESS-08", rough / fine, 3,
           std::string(blow.name) + ": the same at a quarter, over it", verify::Bound::lower);
   }
@@ -286,11 +294,11 @@ TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and
     contact.friction_model = k % 12 < 6 ? Friction::elastic_stick : Friction::viscous;
     run.add(tool<Lane>(Sphere<double>({7, 8, -30.001}, 30), ToolMotion::prescribed(motion), contact,
                        m.node_count));
-    run.add(tool<Lane>(Plane<double>({0, 0, 0.1}, {0, 0, -1}),
-                       ToolMotion::free_under(
-                           [kind, value](double t) { return kind == 5 && t > 1e-3 ? value : -0.01; },
-                           1e-3, 1),
-                       contact, m.node_count));
+    run.add(tool<Lane>(
+        Plane<double>({0, 0, 0.1}, {0, 0, -1}),
+        ToolMotion::free_under(
+            [kind, value](double t) { return kind == 5 && t > 1e-3 ? value : -0.01; }, 1e-3, 1),
+        contact, m.node_count));
     run.start(0.5 * run.critical_step());
     const End end = advance(run, 40, [&](int step, NodalState<double>& s) {
       if (step != static_cast<int>(when)) return;
@@ -310,7 +318,8 @@ TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and
   REQUIRE(stopped > 100);
   REQUIRE(finite > 100);
   claim("V-STRESS-08", static_cast<double>(silent), 0,
-        "runs with numbers that are none and no RunError, or a RunError without node, tool or ledger");
+        "runs with numbers that are none and no RunError, or a RunError without node, tool or "
+        "ledger");
 }
 
 TEST_SUITE_END();

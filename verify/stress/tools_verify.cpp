@@ -63,8 +63,8 @@ TEST_CASE("V-STRESS-05 a tool of any size is refused or answers at every point")
           const Vec3<double> p = point(random, std::pow(10, random.uniform(-3, 3)));
           const long fault = faults(shape, p);
           const auto at = shape.gap(p);
-          CHECK_MESSAGE(fault == 0, std::string(name), " at ", p.x, ", ", p.y, ", ", p.z, ": gap ", at.gap,
-                        " normal ", at.normal.x, ", ", at.normal.y, ", ", at.normal.z);
+          CHECK_MESSAGE(fault == 0, std::string(name), " at ", p.x, ", ", p.y, ", ", p.z, ": gap ",
+                        at.gap, " normal ", at.normal.x, ", ", at.normal.y, ", ", at.normal.z);
           broken += fault;
           ++asked;
         }
@@ -74,7 +74,8 @@ TEST_CASE("V-STRESS-05 a tool of any size is refused or answers at every point")
     }
   };
   const auto number = [&](double typical) { return sized(random, typical); };
-  tool_of("plane", 2000, [&] { return Plane<double>(point(random, 10), point(random, 1), number(1)); });
+  tool_of("plane", 2000,
+          [&] { return Plane<double>(point(random, 10), point(random, 1), number(1)); });
   tool_of("sphere", 2000, [&] { return Sphere<double>(point(random, 10), number(10), number(1)); });
   tool_of("cylinder", 2000, [&] {
     return Cylinder<double>(point(random, 10), point(random, 1), number(10), number(1));
@@ -84,17 +85,22 @@ TEST_CASE("V-STRESS-05 a tool of any size is refused or answers at every point")
   });
   tool_of("dome", 2000, [&] {
     DoubleDomeParameters<double> p;
-    for (double* x : {&p.depth, &p.dome_axis, &p.dome_radius, &p.dome_fillet, &p.ridge_flat,
-                      &p.ridge_edge, &p.ridge_fillet, &p.wall_angle, &p.blend_start, &p.blend_end,
-                      &p.blend_rounding})
+    for (double* x :
+         {&p.depth, &p.dome_axis, &p.dome_radius, &p.dome_fillet, &p.ridge_flat, &p.ridge_edge,
+          &p.ridge_fillet, &p.wall_angle, &p.blend_start, &p.blend_end, &p.blend_rounding})
       if (random.uniform(0, 1) < 0.15) *x = number(*x);
     return HeightSurface<DoubleDome<double>>(DoubleDome<double>(p, random.uniform(0, 2)),
                                              Side::above);
   });
   tool_of("table", 500, [&] {
     const double height = number(10), x0 = number(1), y0 = number(1);
-    const HeightTableGrid<double> grid{x0, x0 + number(10), y0, y0 + number(10), number(0.5),
-                                       random.uniform(0, 1) < 0.5, random.uniform(0, 1) < 0.5};
+    const HeightTableGrid<double> grid{x0,
+                                       x0 + number(10),
+                                       y0,
+                                       y0 + number(10),
+                                       number(0.5),
+                                       random.uniform(0, 1) < 0.5,
+                                       random.uniform(0, 1) < 0.5};
     if (grid.x1 - grid.x0 > 2000 * grid.spacing || grid.y1 - grid.y0 > 2000 * grid.spacing)
       throw InputError("this test", "table", "", "small tables");
     return HeightSurface<HeightTable<double>>(
@@ -151,9 +157,9 @@ TEST_CASE("V-STRESS-06 meshes, masses and blocks from any numbers: refused, or f
                std::abs(detail::norm(f.weft) - 1) < 1e-12;
       NodalState<double> state(m, mass);
       const FibreAngle<double> fibre_angle(angle);
-      const Woven<ConstantShear<double>> law{
-          Cell(CellParameters<double>{}), ConstantShear<double>(number(1e-3), fibre_angle),
-          fibre_angle};
+      const Woven<ConstantShear<double>> law{Cell(CellParameters<double>{}),
+                                             ConstantShear<double>(number(1e-3), fibre_angle),
+                                             fibre_angle};
       // Four elements and nine nodes leave lanes idle in every pack.
       using T = NativePack<double>;
       CentralDifference<T> run(state, mass, random.uniform(0, 1) < 0.7 ? 0 : number(0.1));

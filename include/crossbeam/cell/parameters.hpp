@@ -140,7 +140,8 @@ void validate(const CellParameters<R>& p, const std::string& prefix = "cell") {
     throw InputError(prefix,
                      detail::to_text(range.least_stiffness) + " to " +
                          detail::to_text(range.total_stiffness) +
-                         " kN/mm (E A / l0 of the yarns, E3 A3 / L3) on lengths of " + detail::to_text(range.least_length) +
+                         " kN/mm (E A / l0 of the yarns, E3 A3 / L3) on lengths of " +
+                         detail::to_text(range.least_length) +
                          " to " + detail::to_text(range.largest_length),
                      "mm",
                      "stiffness^3, times a length or not, and stiffness length^3 must be numbers "

@@ -16,8 +16,8 @@ CROSSBEAM_INLINE Vec3<T> spread(const Vec3<R>& v) {
 }
 
 /// Distance of a round tool: |radial| - radius, along the radial direction [T-5]. On the centre (or
-/// so near that the squared distance loses its digits), where every direction is as good, the normal
-/// is the given one.
+/// so near that the squared distance loses its digits), where every direction is as good, the
+/// normal is the given one.
 template <class T, class R>
 CROSSBEAM_INLINE SurfaceGap<T> round_gap(const Vec3<T>& radial, const R& radius,
                                          const Vec3<R>& at_centre) {
@@ -72,8 +72,8 @@ class Sphere {
       : centre_(detail::require_place("sphere.centre", centre, "length")),
         radius_(require_positive(
             "sphere.radius + offset",
-            detail::require_square("sphere.radius", require_positive("sphere.radius", radius, "length"),
-                                   "length") +
+            detail::require_square("sphere.radius",
+                                   require_positive("sphere.radius", radius, "length"), "length") +
                 detail::require_square("sphere.offset", offset, "length"),
             "length")) {}
 
@@ -102,8 +102,8 @@ class Cylinder {
         axis_(detail::require_direction("cylinder.axis", axis)),
         radius_(require_positive(
             "cylinder.radius + offset",
-            detail::require_square("cylinder.radius", require_positive("cylinder.radius", radius, "length"),
-                                   "length") +
+            detail::require_square("cylinder.radius",
+                                   require_positive("cylinder.radius", radius, "length"), "length") +
                 detail::require_square("cylinder.offset", offset, "length"),
             "length")),
         across_(across(axis_)) {}

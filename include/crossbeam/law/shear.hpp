@@ -203,7 +203,8 @@ class PolynomialCurve {
       const R G = modulus(R(k) / R(100));
       if (!(G >= R(0) && G <= std::numeric_limits<R>::max()))
         throw InputError("shear.coefficients: G(" + detail::to_text(k / 100.0) + " rad)",
-                         detail::to_text(G), "kN/mm", "a finite number >= 0 for all angles from 0 to 1.2 rad");
+                         detail::to_text(G), "kN/mm",
+                         "a finite number >= 0 for all angles from 0 to 1.2 rad");
     }
   }
 
