@@ -19,8 +19,8 @@ import time
 import tomllib
 
 HERE = pathlib.Path(__file__).resolve().parent
-AIM = 0.98  # with --strict; and every survivor is explained
-FLOOR = 0.97  # always: what a change of a kernel may cost until its tests are sharpened
+# With --strict; and every survivor is explained. Without it the report shows the score.
+AIM = 0.98
 # Seconds of processor time; the tests that reach a mutant run cheapest first, in portions.
 PORTIONS = (0.03, 0.15, 0.5, 1.5, 1e9)
 # Take longer than all others together: relaxations, and a scan of random states.
@@ -250,11 +250,10 @@ def main():
         print("  unexplained: " + show(s) + (f"  ({s['note']})" if s["note"] else ""))
     for file, line, change in stale:
         print(f"  explained in survivors.toml, but killed or gone: {file}: {line}: {change}")
-    least = AIM if arguments.strict else FLOOR
-    below = not partly and report["score"] < least
+    below = not partly and report["score"] < AIM
     if below:
-        print(f"  the score is below {100 * least:.0f} %")
-    failed = below or (arguments.strict and bool(unexplained or stale))
+        print(f"  the score is below the aim of {100 * AIM:.0f} %")
+    failed = arguments.strict and bool(below or unexplained or stale)
     return 1 if failed else 0
 
 
