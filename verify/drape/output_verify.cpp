@@ -406,7 +406,7 @@ TEST_CASE("V-IO-12 summary.json holds every field of the case") {
   DrapeCase c = some_case();
   c.blank.seed = 9007199254740993u;  // 2^53 + 1: lost where integers pass through double
   c.process.speed = 0.1;
-  c.contact.friction_model = FrictionModel::viscous;
+  c.contact.friction_model = crossbeam::Friction::viscous;
   const auto json = nlohmann::json::parse(case_json(c).dump());
   for (const auto& field : field_names()) {
     std::string pointer = "/" + field;

@@ -125,9 +125,11 @@ const std::vector<OutOfRange>& out_of_range() {
       {"contact.damping_ratio", "1.1", "", "<= 1"},
       {"contact.friction", "-0.1", "", ">= 0"},
       {"contact.friction", "1.1", "", "<= 1"},
-      {"contact.friction_model", "'dry'", "", "elastic_stick or viscous"},
+      {"contact.friction_model", "'dry'", "", "elastic_stick, viscous or smooth"},
       {"contact.viscous_slip", "0.0", "", "> 0"},
       {"contact.viscous_slip", "1.1", "", "<= 1"},
+      {"contact.smoothing", "-0.1", "mm", ">= 0"},
+      {"contact.smoothing", "1.1", "mm", "<= 1"},
       {"contact.table_spacing", "0.0", "mm", ">= 0.05"},
       {"contact.table_spacing", "6.0", "mm", "<= 5"},
       {"integration.step_factor", "0.0", "", "> 0"},
@@ -288,7 +290,7 @@ TEST_CASE("V-IO-05 the supplied scenes hold the documented values") {
     CHECK(c->contact.friction == 0.2);
     CHECK(c->contact.penalty == 0.05);
     CHECK(c->contact.damping_ratio == 0.2);
-    CHECK(c->contact.friction_model == FrictionModel::elastic_stick);
+    CHECK(c->contact.friction_model == crossbeam::Friction::elastic_stick);
     CHECK(c->integration.step_factor == 0.9);
     CHECK(c->integration.mass_damping == 0.02);
     CHECK(c->integration.bulk_viscosity == 0.06);
