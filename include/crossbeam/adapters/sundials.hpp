@@ -423,6 +423,11 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
     detail::check(KINSetNumMaxIters(kin, options.iterations), "KINSetNumMaxIters");
     detail::check(KINSetFuncNormTol(kin, options.tolerance), "KINSetFuncNormTol");
     detail::check(KINSetScaledStepTol(kin, 1e-15), "KINSetScaledStepTol");
+    // Where yarns pass between taut and slack, short steps are the way and no failure.
+    detail::check(KINSetMaxBetaFails(kin, options.iterations), "KINSetMaxBetaFails");
+    detail::check(KINSetNoInitSetup(kin, SUNFALSE), "KINSetNoInitSetup");
+    // The result says what came of it.
+    detail::check(KINSetErrFile(kin, nullptr), "KINSetErrFile");
     if (options.largest_step > 0)
       detail::check(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
     const int flag = KINSol(kin, q, KIN_LINESEARCH, ones, scale);

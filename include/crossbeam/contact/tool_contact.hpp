@@ -148,6 +148,9 @@ class ToolContact {
     return std::abs(v_plus_) * dt;
   }
 
+  /// Forgets what is known about clearances: `travel` begins anew.
+  virtual void reset_culling() = 0;
+
   /// Puts the tool to a place and a velocity, for methods that keep their own time: the next
   /// add_forces takes both as those of its instant.
   void place(double z, double velocity) {
@@ -321,6 +324,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     return sides(areal_mass, area) * 2 * parameters_.damping_ratio *
            std::sqrt(penalty() / areal_mass);
   }
+
+  void reset_culling() override { std::fill(safe_until_.begin(), safe_until_.end(), 0.0); }
 
   [[nodiscard]] bool is_rate_form() const override {
     return parameters_.friction == 0 || parameters_.friction_model == Friction::smooth;

@@ -40,6 +40,7 @@ class CentralDifference {
     require_positive("time_step in the run's precision", static_cast<R>(dt), "ms");
     time_ = 0;
     model_.state.v_centre = model_.state.v;
+    for (const auto& t : model_.tools) t->reset_culling();
   }
 
   /// One step: forces at t_n, velocities to t_{n+1/2}, positions to t_{n+1}.

@@ -7,8 +7,9 @@
 
 #include <Eigen/SparseCore>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,7 @@ class FirstOrderSystem {
       }
     }
     degrees_of_freedom_ = 3 * model.state.node_count + static_cast<int>(free_tools_.size());
+    for (const auto& tool : model.tools) tool->reset_culling();
   }
 
   /// Length of y.
@@ -65,7 +67,10 @@ class FirstOrderSystem {
   void write(double t, const double* y) {
     NodalState<double>& s = model_.state;
     const double* v = y + degrees_of_freedom_;
+    double furthest = 0, tools = 0;
     for (int n = 0; n < s.node_count; ++n) {
+      const Vec3<double> d = s.x.get(n) - Vec3<double>{y[3 * n], y[3 * n + 1], y[3 * n + 2]};
+      furthest = std::max(furthest, dot(d, d));
       s.x.x[n] = y[3 * n];
       s.x.y[n] = y[3 * n + 1];
       s.x.z[n] = y[3 * n + 2];
@@ -75,19 +80,24 @@ class FirstOrderSystem {
     }
     for (std::size_t k = 0, free = 0; k < model_.tools.size(); ++k) {
       const ToolMotion& motion = model_.tools[k]->motion();
+      const double before = model_.tools[k]->position();
       if (motion.is_free()) {
         model_.tools[k]->place(y[3 * s.node_count + free], v[3 * s.node_count + free]);
         ++free;
       } else {
         model_.tools[k]->place(motion.position(t), motion.velocity(t));
       }
+      tools = std::max(tools, std::abs(model_.tools[k]->position() - before));
     }
+    // However an integrator goes to and fro: the culling [F-4] adds up all of it.
+    travel_ += std::sqrt(furthest) + tools;
   }
 
   /// y' = (q', M^-1 f - alpha q').
   void rate(double t, const double* y, double* dy) {
     write(t, y);
-    model_.compute_forces(1, std::numeric_limits<double>::infinity());
+    constexpr double no_step = 1;  // forces in rate form do not ask for it
+    model_.compute_forces(no_step, travel_);
     const NodalState<double>& s = model_.state;
     const double alpha = model_.mass_damping;
     const double* v = y + degrees_of_freedom_;
@@ -156,6 +166,7 @@ class FirstOrderSystem {
   Model<double>& model_;
   std::vector<int> free_tools_;
   int degrees_of_freedom_ = 0;
+  double travel_ = 0;  ///< as ToolContact::add_forces
   long long evaluations_ = 0, jacobians_ = 0;
 };
 
