@@ -332,6 +332,15 @@ TEST_CASE("V-CELL-21 input without an answer gets a status, never a hang or a si
       }
   }
   REQUIRE(asked == 2 * 3 * 26 * 26);
+  // The largest elongation itself has no answer, the number below it has, for either yarn.
+  const Cell cell(verify::table_1());
+  const double most = cell.largest_elongation(), below = std::nextafter(most, 0.0);
+  for (const bool warp : {true, false}) {
+    CHECK(cell.solve(warp ? most : 0.0, warp ? 0.0 : most).status ==
+          CellStatus::outside_kinematics);
+    CHECK(cell.solve(warp ? below : 0.0, warp ? 0.0 : below).status !=
+          CellStatus::outside_kinematics);
+  }
   verify::claim("V-CELL-21", static_cast<double>(silent), 0, "non-finite answers called converged");
   verify::claim("V-CELL-21", static_cast<double>(wrong), 0,
                 "answers called converged where there is no equilibrium");
