@@ -340,6 +340,17 @@ TEST_CASE("V-CELL-21 input without an answer gets a status, never a hang or a si
           CellStatus::outside_kinematics);
     CHECK(cell.solve(warp ? below : 0.0, warp ? 0.0 : below).status !=
           CellStatus::outside_kinematics);
+    // In any lane of a pack.
+    using Wide = crossbeam::Pack<double, 4>;
+    const double lanes[4] = {0, 0.01, most, -0.01};
+    const Wide far = Wide::load(lanes), near(0.0);
+    CHECK(cell.solve(warp ? far : near, warp ? near : far).status ==
+          CellStatus::outside_kinematics);
+    for (double beyond : {most, 2 * most, 1e300}) {
+      const crossbeam::SecondOrderCell<double> second_order(verify::table_1());
+      CHECK(second_order.solve(warp ? beyond : 0.0, warp ? 0.0 : beyond).status ==
+            CellStatus::outside_kinematics);
+    }
   }
   verify::claim("V-CELL-21", static_cast<double>(silent), 0, "non-finite answers called converged");
   verify::claim("V-CELL-21", static_cast<double>(wrong), 0,

@@ -247,6 +247,14 @@ TEST_CASE("V-LAW-23 a strain of yarns on one line, and a number that is none, ne
     for (double bad : {1 - 8 * eps, 1 - 4 * eps, 1.0, 1.5})
       wrong += status(side * bad) != crossbeam::CellStatus::outside_kinematics;
   }
+  // A strain whose energy alone, or whose tangent alone, is beyond all numbers.
+  Matrix2<double> huge;
+  huge << 1e160, 3e159, 3e159, 1e160;
+  const auto response = crossbeam::membrane_response(law, huge, crossbeam::Tangent::yes);
+  REQUIRE(crossbeam::detail::all_finite(response.S));
+  REQUIRE(crossbeam::detail::all_finite(response.dS_dE));
+  REQUIRE(!std::isfinite(response.energy));
+  wrong += response.status == crossbeam::CellStatus::converged;
   verify::claim("V-LAW-23", static_cast<double>(wrong), 0,
                 "cosines beside 1 - 8 eps that were taken for the other side");
 
