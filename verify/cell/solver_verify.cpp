@@ -332,6 +332,26 @@ TEST_CASE("V-CELL-21 input without an answer gets a status, never a hang or a si
       }
   }
   REQUIRE(asked == 2 * 3 * 26 * 26);
+  // The largest elongation itself has no answer, the number below it has, for either yarn.
+  const Cell cell(verify::table_1());
+  const double most = cell.largest_elongation(), below = std::nextafter(most, 0.0);
+  for (const bool warp : {true, false}) {
+    CHECK(cell.solve(warp ? most : 0.0, warp ? 0.0 : most).status ==
+          CellStatus::outside_kinematics);
+    CHECK(cell.solve(warp ? below : 0.0, warp ? 0.0 : below).status !=
+          CellStatus::outside_kinematics);
+    // In any lane of a pack.
+    using Wide = crossbeam::Pack<double, 4>;
+    const double lanes[4] = {0, 0.01, most, -0.01};
+    const Wide far = Wide::load(lanes), near(0.0);
+    CHECK(cell.solve(warp ? far : near, warp ? near : far).status ==
+          CellStatus::outside_kinematics);
+    for (double beyond : {most, 2 * most, 1e300}) {
+      const crossbeam::SecondOrderCell<double> second_order(verify::table_1());
+      CHECK(second_order.solve(warp ? beyond : 0.0, warp ? 0.0 : beyond).status ==
+            CellStatus::outside_kinematics);
+    }
+  }
   verify::claim("V-CELL-21", static_cast<double>(silent), 0, "non-finite answers called converged");
   verify::claim("V-CELL-21", static_cast<double>(wrong), 0,
                 "answers called converged where there is no equilibrium");

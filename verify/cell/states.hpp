@@ -7,6 +7,7 @@
 #include "support/random.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace verify {
@@ -38,6 +39,25 @@ inline Parameters random_fabric(Random& random) {
   p.weft.length = random.uniform(1.5, 4);
   p.contact_length = random.uniform(0.05, 1.5);
   p.warp_height_fraction = random.uniform(0.05, 0.95);
+  return p;
+}
+
+/// The fabric in units that make forces 2^force and lengths 2^length times the numbers they were.
+inline Parameters in_other_units(Parameters p, int force, int length) {
+  const auto scale = [](double& value, int exponent) {
+    const double scaled = std::ldexp(value, exponent);
+    value = std::ldexp(scaled, -exponent) == value ? scaled : std::nan("");  // no such number
+  };
+  for (auto* yarn : {&p.warp, &p.weft}) {
+    scale(yarn->youngs_modulus, force - 2 * length);
+    scale(yarn->cross_section, 2 * length);
+    scale(yarn->second_moment_of_area, 4 * length);
+    scale(yarn->length, length);
+  }
+  scale(p.contact_modulus, force - 2 * length);
+  scale(p.contact_area, 2 * length);
+  scale(p.contact_length, length);
+  scale(p.residual_compression_stiffness, force - length);
   return p;
 }
 

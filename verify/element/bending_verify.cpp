@@ -209,6 +209,31 @@ TEST_CASE("V-BEND-01 the second difference is exact for every quadratic field") 
       }
       CHECK(quadratic_difference(1, ring).empty());
     }
+
+  // Rings whose radius cannot be squared, or that reach to infinity, are refused.
+  using Limits = std::numeric_limits<double>;
+  const double shortest = std::sqrt(Limits::min() / Limits::epsilon()),
+               longest = std::sqrt(Limits::max() * Limits::epsilon());
+  const auto weights = [](double radius, double far) {
+    std::vector<StencilNeighbour> ring;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j)
+        if (i != 0 || j != 0) ring.push_back({3 * i + j, radius * i, radius * j});
+    ring[0].along *= far;
+    return three_point_difference(99, ring).size() + quadratic_difference(99, ring).size();
+  };
+  const double corner = std::sqrt(2.0);
+  CHECK(weights(1, 1) == 12);
+  CHECK(weights(1.001 * shortest / corner, 1) == 12);
+  CHECK(weights(0.999 * shortest / corner, 1) == 0);
+  CHECK(weights(0.999 * longest / corner, 1) == 12);
+  CHECK(weights(1.001 * longest / corner, 1) == 0);
+  CHECK(weights(1, std::numeric_limits<double>::infinity()) == 0);
+  CHECK(weights(1, std::numeric_limits<double>::quiet_NaN()) == 0);
+  // Nearest neighbours so close that a weight overflows.
+  for (double close : {1.0, -1.0})
+    CHECK(three_point_difference(99, {{0, close * 1e-200, 0}, {1, -close * 1e-120, 0}}).empty());
+  CHECK(three_point_difference(99, {{0, 1e-160, 0}, {1, -1, 0}, {2, 1, 0}}).size() == 3);
 }
 
 TEST_CASE("V-BEND-02 cylinder patch: D/(2 R^2) per area, approached with order 2") {

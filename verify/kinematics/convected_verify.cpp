@@ -263,7 +263,7 @@ TEST_CASE("V-KIN-05 bad kinematic input is refused by name, value and range") {
       refused += error.field() == field;
     }
   };
-  for (const double delta : {0.0, -0.1, pi, 3.5, nan, inf, -inf})
+  for (const double delta : {0.0, -0.1, 0.9e-4, pi - 0.9e-4, pi, 3.5, nan, inf, -inf})
     must_refuse([&] { crossbeam::FibreAngle<double>{delta}; }, "delta_bar");
 
   Base<double> good;
@@ -279,12 +279,17 @@ TEST_CASE("V-KIN-05 bad kinematic input is refused by name, value and range") {
   empty(1, 1) = nan;
   infinite(0, 0) = inf;
   huge *= 1e160;
-  for (const Base<double>& bad : {parallel, zero, empty, infinite, huge})
+  // Of square bases: the squared area, edge^4, is to be at least min/eps^2.
+  const double eps = std::numeric_limits<double>::epsilon();
+  const double least_edge = std::pow(std::numeric_limits<double>::min() / (eps * eps), 0.25);
+  const Base<double> small = 1.001 * least_edge / 5 * good, tiny = 0.999 * least_edge / 5 * good;
+  CHECK_NOTHROW(static_cast<void>(crossbeam::cartesian_from_convected(small, 0.3)));
+  for (const Base<double>& bad : {parallel, zero, empty, infinite, huge, tiny})
     must_refuse([&] { static_cast<void>(crossbeam::cartesian_from_convected(bad, 0.3)); },
                 "element base");
   // The edge of the admissible range stays open: nearly parallel fibres are legal.
-  CHECK_NOTHROW(crossbeam::FibreAngle<double>{1e-3});
-  CHECK_NOTHROW(crossbeam::FibreAngle<double>{pi - 1e-3});
+  CHECK_NOTHROW(crossbeam::FibreAngle<double>{1.1e-4});
+  CHECK_NOTHROW(crossbeam::FibreAngle<double>{pi - 1.1e-4});
   // A count: every one of them or the claim is false.
   verify::claim("V-KIN-05", asked - refused, 0, "bad inputs that were not refused by name");
 }

@@ -228,6 +228,50 @@ TEST_CASE("V-LAW-22 with a shear layer waves soften by the compressive stress al
   by_angle.claim("V-LAW-22", 2e-5, "the same, energies in the fibre angle [kN/mm]");
 }
 
+TEST_CASE("V-LAW-23 a strain of yarns on one line, and a number that is none, never go unnoticed") {
+  // At 90 deg without stretch the yarns' cosine is 2 E12: the last one accepted is 1 - 8 eps, exclusive.
+  const double eps = std::numeric_limits<double>::epsilon();
+  const auto law = verify::woven<double>(crossbeam::CellParameters<double>{},
+                                         crossbeam::ConstantShear<double>(
+                                             1e-3, verify::fibre_angle<double>(90)),
+                                         90);
+  const auto status = [&](double cosine) {
+    Matrix2<double> E;
+    E << 0, cosine / 2, cosine / 2, 0;
+    return crossbeam::membrane_response(law, E, crossbeam::Tangent::yes).status;
+  };
+  long wrong = 0;
+  for (double side : {1.0, -1.0}) {
+    for (double good : {0.5, 1 - 16 * eps, 1 - 8.5 * eps})
+      wrong += status(side * good) != crossbeam::CellStatus::converged;
+    for (double bad : {1 - 8 * eps, 1 - 4 * eps, 1.0, 1.5})
+      wrong += status(side * bad) != crossbeam::CellStatus::outside_kinematics;
+  }
+  // A strain whose energy alone, or whose tangent alone, is beyond all numbers.
+  Matrix2<double> huge;
+  huge << 1e160, 3e159, 3e159, 1e160;
+  const auto response = crossbeam::membrane_response(law, huge, crossbeam::Tangent::yes);
+  REQUIRE(crossbeam::detail::all_finite(response.S));
+  REQUIRE(crossbeam::detail::all_finite(response.dS_dE));
+  REQUIRE(!std::isfinite(response.energy));
+  wrong += response.status == crossbeam::CellStatus::converged;
+  verify::claim("V-LAW-23", static_cast<double>(wrong), 0,
+                "cosines beside 1 - 8 eps that were taken for the other side");
+
+  // Each entry of what is answered is looked at.
+  long missed = 0;
+  for (double none : {std::numeric_limits<double>::quiet_NaN(),
+                      std::numeric_limits<double>::infinity()})
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        Matrix3<double> K = Matrix3<double>::Identity();
+        missed += !crossbeam::detail::all_finite(K);
+        K(i, j) = none;
+        missed += crossbeam::detail::all_finite(K);
+      }
+  verify::claim("V-LAW-23", static_cast<double>(missed), 0, "entries that are no number, unnoticed");
+}
+
 TEST_CASE("V-LAW-17 at rest there is no stress and no energy, and never less energy than at rest") {
   VERIFY_RANDOM(random, 3017);
   verify::Worst rest, negative;

@@ -20,25 +20,6 @@ namespace {
 using namespace crossbeam;
 using verify::Parameters;
 
-/// The fabric in units that make forces 2^force and lengths 2^length times the numbers they were.
-Parameters in_other_units(Parameters p, int force, int length) {
-  const auto scale = [](double& value, int exponent) {
-    const double scaled = std::ldexp(value, exponent);
-    value = std::ldexp(scaled, -exponent) == value ? scaled : std::nan("");  // no such number
-  };
-  for (auto* yarn : {&p.warp, &p.weft}) {
-    scale(yarn->youngs_modulus, force - 2 * length);
-    scale(yarn->cross_section, 2 * length);
-    scale(yarn->second_moment_of_area, 4 * length);
-    scale(yarn->length, length);
-  }
-  scale(p.contact_modulus, force - 2 * length);
-  scale(p.contact_area, 2 * length);
-  scale(p.contact_length, length);
-  scale(p.residual_compression_stiffness, force - length);
-  return p;
-}
-
 /// Random elongations, most of them moderate, in the lanes of a pack.
 template <class T>
 T lanes_of(fuzz::Bytes& bytes, double length) {
@@ -92,7 +73,7 @@ TEST_CASE("V-STRESS-01 in any units a cell has the same answer, or is refused") 
         const auto here = verify::answer(verify::Cell(f.p), f.u1, f.u2);
         REQUIRE(verify::converged(here));
         try {
-          const verify::Cell cell(in_other_units(f.p, force, length));
+          const verify::Cell cell(verify::in_other_units(f.p, force, length));
           const auto there =
               verify::answer(cell, std::ldexp(f.u1, length), std::ldexp(f.u2, length));
           // A status is no answer, and no wrong one either.

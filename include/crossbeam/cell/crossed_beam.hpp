@@ -294,7 +294,8 @@ class CrossedBeamCell {
     w1 = hs1 + f * gap - T(yarn1_.H);
     w2 = hs2 + (T(1) - f) * gap - T(yarn2_.H);
     // Strictly slack: yarns that just touch are closed, so that the virgin tangent is the taut one.
-    return !has_bending_ && all(spare > T(0)) && all(a1 > T(0)) && all(a2 > T(0));
+    // A yarn that even straight is stretched starts, and is, at height zero.
+    return !has_bending_ && all(spare > T(0));
   }
 
   /// One Newton sweep on {g1 = q, g2 = q, w1 + w2 + q/k3 = 0} with q >= 0 for the unilateral

@@ -94,9 +94,8 @@ struct CellRange {
     const R low = std::numeric_limits<R>::min() / (eps * eps * eps);
     const R high = std::numeric_limits<R>::max() * eps;
     const R k = least_stiffness, K = total_stiffness, l = least_length, L = largest_length;
-    return l * l >= low && minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low &&
-           k >= low * L * L && L * L <= high && maximum(R(1), L) * K * K * K <= high &&
-           K * L * L * L <= high;
+    return minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low && k >= low * L * L &&
+           maximum(R(1), L) * K * K * K <= high && K * L * L * L <= high;
   }
 
   /// Whether the softer yarn's force is more than the rounding of the stiffer one's, tag [C-12].
