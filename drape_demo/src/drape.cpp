@@ -90,8 +90,8 @@ class QuarterDrape {
     LedgerRow row;
     row.time = ledger.time;
     row.stroke = stroke;
-    row.punch_work = tools[0]->work().tool;
-    row.holder_work = tools[2]->work().tool;
+    row.punch_work = tools[punch_tool]->work().tool;
+    row.holder_work = tools[holder_tool]->work().tool;
     row.yarn = ledger.internal.yarn;
     row.shear = ledger.internal.shear;
     row.bending = ledger.internal.bending;

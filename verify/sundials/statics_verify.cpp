@@ -138,7 +138,7 @@ TEST_CASE("V-REF-07 a sheet over a sphere: the explicit run comes to rest in the
   REQUIRE(positions(run.model())[sheet.middle()].z() > 4.8);
   REQUIRE(distances.front() > distances.back());
   claim("V-REF-07", unbalanced, 1e-10, "unbalanced force over the internal forces");
-  claim("V-REF-07", moved, 1e-6,
+  claim("V-REF-07", moved, 1e-5,
         "distance of the explicit run from the equilibrium, two strokes' time after the stroke [mm]");
 }
 

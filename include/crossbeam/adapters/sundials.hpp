@@ -1,8 +1,8 @@
 #pragma once
 /// @file
 /// Reference integrators and statics by SUNDIALS (6.4 or later 6.x): opt-in, not part of the
-/// umbrella. A program that includes it links SUNDIALS::arkode, cvode, ida, kinsol, nvecserial,
-/// sunlinsolklu, sunmatrixsparse and sunnonlinsolfixedpoint. Theory: docs/theory/reference.md.
+/// umbrella. A program that includes it links crossbeam::sundials (find_package(crossbeam COMPONENTS
+/// sundials)). Theory: docs/theory/reference.md, [R-3].
 
 #include "crossbeam/dynamics/first_order_system.hpp"
 #include "crossbeam/dynamics/statics.hpp"
