@@ -86,6 +86,7 @@ struct OutputInput {
 struct DrapeCase {
   std::string name;
   std::string description;
+  std::string preset;  ///< of the command line; empty without (presets.hpp)
   FabricInput fabric{};
   BlankInput blank{};
   ProcessInput process{};
