@@ -6,8 +6,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -87,6 +90,57 @@ TEST_CASE("V-REF-05 backward differences by rate and by residual reach the same 
   compare(frames<reference::BackwardDifferences>(sheet, {1e-6, 1e-6}),
           "CVODE's backward differences with the sparse tangent [mm]");
   compare(frames<reference::ResidualForm>(sheet, {1e-6, 1e-6}), "IDA on residuals [mm]");
+}
+
+TEST_CASE("V-REF-09 the fast vector operations are those of SUNDIALS, in place too") {
+  VERIFY_RANDOM(random, 909);
+  ::sundials::Context context;
+  verify::Worst worst;
+  const auto fill = [&](N_Vector v) {
+    for (sunindextype i = 0; i < N_VGetLength(v); ++i)
+      N_VGetArrayPointer(v)[i] = random.uniform(-2, 2);
+  };
+  const auto off = [](N_Vector a, N_Vector b) {
+    double out = 0;
+    for (sunindextype i = 0; i < N_VGetLength(a); ++i)
+      out = std::max(out, std::abs(N_VGetArrayPointer(a)[i] - N_VGetArrayPointer(b)[i]));
+    return out;
+  };
+  for (const int n : {1, 7, 8, 255, 256, 257, 1000}) {
+    constexpr int count = 6;
+    std::vector<std::unique_ptr<reference::Vector>> fast;
+    std::vector<N_Vector> x, y;
+    sunrealtype c[count];
+    for (int k = 0; k < count; ++k) {
+      fast.push_back(std::make_unique<reference::Vector>(n, context));
+      x.push_back(*fast.back());
+      y.push_back(N_VNew_Serial(n, context));  // with the library's operations
+      fill(x.back());
+      N_VScale_Serial(1, x.back(), y.back());
+      c[k] = random.uniform(-1, 1);
+    }
+    N_Vector clone = N_VClone(x[0]);
+    REQUIRE(clone->ops->nvlinearcombination == x[0]->ops->nvlinearcombination);
+    REQUIRE(clone->ops->nvlinearcombination != y[0]->ops->nvlinearcombination);
+    for (int used = 1; used <= count; ++used) {
+      N_VLinearCombination(used, c, x.data(), x[0]);  // into the first of them
+      N_VLinearCombination_Serial(used, c, y.data(), y[0]);
+      worst.see(off(x[0], y[0]), "combination of", used, "length", n);
+    }
+    for (int into : {0, 1, 2}) {
+      N_VLinearSum(c[0], x[0], c[1], x[1], x[into]);
+      N_VLinearSum_Serial(c[0], y[0], c[1], y[1], y[into]);
+      worst.see(off(x[into], y[into]), "sum into", into, "length", n);
+      N_VScale(c[2], x[1], x[into]);
+      N_VScale_Serial(c[2], y[1], y[into]);
+      worst.see(off(x[into], y[into]), "scaled into", into, "length", n);
+    }
+    worst.see(std::abs(N_VWrmsNorm(x[3], x[4]) - N_VWrmsNorm_Serial(y[3], y[4])), "norm, length", n);
+    N_VDestroy(clone);
+    for (N_Vector v : y) N_VDestroy(v);
+  }
+  // Numbers up to 10, summed in another order.
+  worst.claim("V-REF-09", 1e-13, "difference of any entry");
 }
 
 TEST_SUITE_END();
