@@ -69,9 +69,9 @@ void run_all(std::vector<Run>& runs, int jobs) {
 /// What one case needs to be compared.
 struct Comparison {
   std::string name;
-  std::vector<Run> runs;
+  std::vector<Run> runs{};
   std::size_t time_reference = 0, second_opinion = 0, best = 0;
-  std::vector<std::size_t> perturbed;  ///< eight starts that differ by 1e-9 mm
+  std::vector<std::size_t> perturbed{};  ///< eight starts that differ by 1e-9 mm
   std::size_t unperturbed = 0;
 };
 

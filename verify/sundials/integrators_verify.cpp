@@ -120,8 +120,8 @@ TEST_CASE("V-REF-09 the fast vector operations are those of SUNDIALS, in place t
       c[k] = random.uniform(-1, 1);
     }
     N_Vector clone = N_VClone(x[0]);
-    REQUIRE(clone->ops->nvlinearcombination == x[0]->ops->nvlinearcombination);
-    REQUIRE(clone->ops->nvlinearcombination != y[0]->ops->nvlinearcombination);
+    REQUIRE((clone->ops->nvlinearcombination == x[0]->ops->nvlinearcombination));
+    REQUIRE((clone->ops->nvlinearcombination != y[0]->ops->nvlinearcombination));
     for (int used = 1; used <= count; ++used) {
       N_VLinearCombination(used, c, x.data(), x[0]);  // into the first of them
       N_VLinearCombination_Serial(used, c, y.data(), y[0]);

@@ -17,13 +17,14 @@ using reference::StaticResult;
 using verify::claim;
 
 /// A sheet whose rim is put to an affine map of its plane; inside, the nodes start off their places
-/// by up to 0.3 mm.
+/// by up to 0.3 mm; of slack sheets in the plane: how they buckle out of it is another question, with
+/// many answers.
 struct HeldSheet {
   static constexpr int n = 8;
   Mesh<4> sheet = rectangle(40, 40, n, n, 0.3);
   Model<double> model;
 
-  HeldSheet(double xx, double yy, double xy, verify::Random& random)
+  HeldSheet(double xx, double yy, double xy, bool planar, verify::Random& random)
       : model(NodalState<double>(sheet, areal_mass, fixed_rim(n, n)), areal_mass) {
     const auto law = fabric(pi / 2, 0.01);
     model.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
@@ -32,7 +33,9 @@ struct HeldSheet {
     for (int k = 0; k < sheet.node_count; ++k) {
       const Vec3<double> X = sheet.nodes.get(k);
       Vec3<double> x{(1 + xx) * X.x + xy * X.y, (1 + yy) * X.y, 0};
-      if (model.state.free.x[k] > 0) x = x + vec3(random.vector(0.3));
+      Eigen::Vector3d d = random.vector(0.3);
+      if (planar) d.z() = 0;
+      if (model.state.free.x[k] > 0) x = x + vec3(d);
       model.state.x.set(k, x);
     }
   }
@@ -66,15 +69,15 @@ TEST_CASE("V-REF-06 Newton on the consistent tangent converges quadratically, al
   verify::Plot plot{"V-REF-06", "Newton's method to equilibrium", "iteration",
                     "unbalanced force [kN]", false, true, {},
                     "Taut sheets converge in six iterations, doubling the digits at the end. Where "
-                    "yarns pass between taut and slack the tangent jumps from 6.8 to 0.03 kN/mm: the "
-                    "line search needs more iterations until no yarn changes sides any more, then "
-                    "the digits double as well."};
+                    "yarns pass between taut and slack the tangent jumps from 6.8 to 0.03 kN/mm: with "
+                    "the line search it takes twice as many iterations until no yarn changes sides "
+                    "any more, then the digits double as well."};
   double worst_order = 10, worst_residual = 0;
   int taut_iterations = 0;
   for (const Case& c : {Case{"stretched", 0.02, 0.01, 0, true}, Case{"sheared", 0.01, 0.01, 0.3, true},
                         Case{"kept one way, loose the other", 0, -0.03, 0, false},
                         Case{"all slack", -0.01, -0.01, 0, false}}) {
-    HeldSheet held(c.xx, c.yy, c.xy, random);
+    HeldSheet held(c.xx, c.yy, c.xy, !c.taut, random);
     StaticProblem problem(held.model, 0);
     const StaticResult r = find_equilibrium(problem, {1e-10, 500, 0});
     INFO(c.name, table(r));
@@ -89,7 +92,8 @@ TEST_CASE("V-REF-06 Newton on the consistent tangent converges quadratically, al
       worst_order = std::min(worst_order, order(r, 1e-10));
       taut_iterations = std::max(taut_iterations, r.iterations);
     } else {
-      claim("V-REF-06", r.iterations, 300,
+      // One iteration more for a row of yarns that changes sides, of eight.
+      claim("V-REF-06", r.iterations, 40,
             std::string("iterations with the line search, ") + c.name + " (" +
                 std::to_string(r.backtracks) + " backtracks)");
     }

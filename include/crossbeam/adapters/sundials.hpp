@@ -406,49 +406,50 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
   Vector q(n, context), ones(n, context), scale(n, context);
   Call call{problem, {}, {}};
   problem.read(q.data());
-  const double force = problem.internal_force(q.data());
   N_VConst(1.0, ones);
-  N_VConst(force > 0 ? 1 / force : 1.0, scale);
   StaticResult out;
-  {
-    std::unique_ptr<void, void (*)(void*)> memory(
-        detail::check(KINCreate(context), "KINCreate"), [](void* m) { KINFree(&m); });
-    void* kin = memory.get();
-    detail::check(KINInit(kin, Call::residual, q), "KINInit");
-    detail::check(KINSetUserData(kin, &call), "KINSetUserData");
-    detail::SparseSolver linear(q, n, 1, context);
-    detail::check(KINSetLinearSolver(kin, linear.solver(), linear.matrix()), "KINSetLinearSolver");
-    detail::check(KINSetJacFn(kin, Call::tangent), "KINSetJacFn");
-    detail::check(KINSetMaxSetupCalls(kin, 1), "KINSetMaxSetupCalls");  // a new tangent every time
-    detail::check(KINSetNumMaxIters(kin, options.iterations), "KINSetNumMaxIters");
-    detail::check(KINSetFuncNormTol(kin, options.tolerance), "KINSetFuncNormTol");
-    detail::check(KINSetScaledStepTol(kin, 1e-15), "KINSetScaledStepTol");
-    // Where yarns pass between taut and slack, short steps are the way and no failure.
-    detail::check(KINSetMaxBetaFails(kin, options.iterations), "KINSetMaxBetaFails");
-    detail::check(KINSetNoInitSetup(kin, SUNFALSE), "KINSetNoInitSetup");
-    // The result says what came of it.
-    detail::check(KINSetErrFile(kin, nullptr), "KINSetErrFile");
-    if (options.largest_step > 0)
-      detail::check(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
+  std::unique_ptr<void, void (*)(void*)> memory(detail::check(KINCreate(context), "KINCreate"),
+                                                [](void* m) { KINFree(&m); });
+  void* kin = memory.get();
+  detail::check(KINInit(kin, Call::residual, q), "KINInit");
+  detail::check(KINSetUserData(kin, &call), "KINSetUserData");
+  const detail::SparseSolver linear(q, n, 1, context);
+  detail::check(KINSetLinearSolver(kin, linear.solver(), linear.matrix()), "KINSetLinearSolver");
+  detail::check(KINSetJacFn(kin, Call::tangent), "KINSetJacFn");
+  detail::check(KINSetMaxSetupCalls(kin, 1), "KINSetMaxSetupCalls");  // a new tangent every time
+  detail::check(KINSetNumMaxIters(kin, options.iterations), "KINSetNumMaxIters");
+  detail::check(KINSetFuncNormTol(kin, options.tolerance), "KINSetFuncNormTol");
+  detail::check(KINSetScaledStepTol(kin, 1e-15), "KINSetScaledStepTol");
+  // Where yarns pass between taut and slack, short steps are the way and no failure.
+  detail::check(KINSetMaxBetaFails(kin, options.iterations), "KINSetMaxBetaFails");
+  detail::check(KINSetErrFile(kin, nullptr), "KINSetErrFile");  // the result says what came of it
+  if (options.largest_step > 0)
+    detail::check(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
+
+  // The internal forces of the start may be far from those of the end: once more with the latter.
+  double internal = problem.internal_force(q.data());
+  for (int round = 0; round < 3 && !out.converged; ++round) {
+    N_VConst(internal > 0 ? 1 / internal : 1.0, scale);
     const int flag = KINSol(kin, q, KIN_LINESEARCH, ones, scale);
     long iterations = 0, backtracks = 0;
     KINGetNumNonlinSolvIters(kin, &iterations);
     KINGetNumBacktrackOps(kin, &backtracks);
-    out.iterations = static_cast<int>(iterations);
-    out.backtracks = static_cast<int>(backtracks);
-    out.converged = flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK;
+    out.iterations += static_cast<int>(iterations);
+    out.backtracks += static_cast<int>(backtracks);
+    std::vector<double> r(static_cast<std::size_t>(n));
+    internal = problem.internal_force(q.data());
+    problem.residual(q.data(), r.data());
+    double largest = 0, squared = 0;
+    for (double f : r) {
+      largest = std::max(largest, std::abs(f));
+      squared += f * f;
+    }
+    out.residual = internal > 0 ? largest / internal : largest;
+    out.converged = out.residual <= options.tolerance;
+    out.history = call.history;
+    out.history.push_back(std::sqrt(squared));
+    if (flag != KIN_SUCCESS && flag != KIN_INITIAL_GUESS_OK) break;
   }
-  std::vector<double> r(static_cast<std::size_t>(n));
-  const double internal = problem.internal_force(q.data());
-  problem.residual(q.data(), r.data());
-  double largest = 0, squared = 0;
-  for (double f : r) {
-    largest = std::max(largest, std::abs(f));
-    squared += f * f;
-  }
-  out.history = std::move(call.history);
-  out.history.push_back(std::sqrt(squared));
-  out.residual = internal > 0 ? largest / internal : largest;
   return out;
 }
 

@@ -474,7 +474,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     if (tool_row < 0) return;
     TangentEntries::add(list, 3 * node, tool_row, -K.col(2));
     TangentEntries::add(list, tool_row, 3 * node, -K.row(2));
-    list.emplace_back(tool_row, tool_row, K(2, 2));
+    list.push_back({tool_row, tool_row, K(2, 2)});
   }
 
   [[nodiscard]] double penalty() const {

@@ -132,9 +132,9 @@ class FirstOrderSystem {
                     2 * static_cast<std::size_t>(degrees_of_freedom_));
     const int n = degrees_of_freedom_;
     for (const auto& e : tangent.stiffness)
-      entries.emplace_back(n + e.row(), e.col(), -inverse_inertia(e.row()) * e.value());
+      entries.emplace_back(n + e.row, e.column, -inverse_inertia(e.row) * e.value);
     for (const auto& e : tangent.damping)
-      entries.emplace_back(n + e.row(), n + e.col(), -inverse_inertia(e.row()) * e.value());
+      entries.emplace_back(n + e.row, n + e.column, -inverse_inertia(e.row) * e.value);
     for (int i = 0; i < n; ++i) {
       entries.emplace_back(i, n + i, 1.0);
       entries.emplace_back(n + i, n + i, -damping_rate(i));

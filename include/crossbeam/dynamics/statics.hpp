@@ -69,7 +69,7 @@ class StaticProblem {
     std::vector<Eigen::Triplet<double, std::int64_t>> entries;
     entries.reserve(tangent.stiffness.size() + static_cast<std::size_t>(unknowns_));
     for (const auto& e : tangent.stiffness)
-      if (is_free(e.row()) && is_free(e.col())) entries.emplace_back(e.row(), e.col(), -e.value());
+      if (is_free(e.row) && is_free(e.column)) entries.emplace_back(e.row, e.column, -e.value);
     for (int i = 0; i < unknowns_; ++i) entries.emplace_back(i, i, is_free(i) ? 0.0 : -1.0);
     K.resize(unknowns_, unknowns_);
     K.setFromTriplets(entries.begin(), entries.end());

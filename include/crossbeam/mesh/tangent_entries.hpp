@@ -6,7 +6,6 @@
 #include "crossbeam/base/scalar.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 
 #include <vector>
 
@@ -15,7 +14,10 @@ namespace crossbeam {
 /// Entries of -df/dx [kN/mm] and -df/dv [kN ms/mm]. Row and column 3 n + i are component i of node
 /// n; those of the free tools follow. Entries at the same place add up.
 struct TangentEntries {
-  using Entry = Eigen::Triplet<double>;
+  struct Entry {
+    int row, column;
+    double value;
+  };
   std::vector<Entry> stiffness, damping;
   bool with_damping = false;  ///< whether anybody wants the second list
 
@@ -24,7 +26,7 @@ struct TangentEntries {
   static void add(std::vector<Entry>& list, int row, int column,
                   const Eigen::MatrixBase<Derived>& block) {
     for (int i = 0; i < block.rows(); ++i)
-      for (int j = 0; j < block.cols(); ++j) list.emplace_back(row + i, column + j, block(i, j));
+      for (int j = 0; j < block.cols(); ++j) list.push_back({row + i, column + j, block(i, j)});
   }
 };
 
