@@ -76,6 +76,17 @@ struct Comparison {
 };
 
 template <class Make>
+void add_references(Comparison& c, const Make& make, double tolerance) {
+  c.time_reference = c.runs.size();
+  c.runs.push_back(
+      {"reference", fmt::format("Runge-Kutta 5, {:g}", tolerance),
+       [=] { return integrate<reference::RungeKutta5>(make(), {tolerance, tolerance}); }});
+  c.second_opinion = c.runs.size();
+  c.runs.push_back({"second opinion", fmt::format("Adams, {:g}", tolerance),
+                    [=] { return integrate<reference::Adams>(make(), {tolerance, tolerance}); }});
+}
+
+template <class Make>
 void add_integrators(Comparison& c, const Make& make, const std::vector<double>& tolerances,
                      const std::vector<double>& implicit) {
   for (double t : tolerances) {
@@ -96,12 +107,7 @@ Comparison sphere(bool brief) {
   const int finest = brief ? 12 : 48;
   const auto make = [base] { return sphere_case<double>(base); };
   const double tight = brief ? 1e-9 : 1e-11;
-  c.time_reference = c.runs.size();
-  c.runs.push_back({"reference", fmt::format("Runge-Kutta 5, {:g}", tight),
-                    [=] { return integrate<reference::RungeKutta5>(make(), {tight, tight}); }});
-  c.second_opinion = c.runs.size();
-  c.runs.push_back({"second opinion", fmt::format("Adams, {:g}", tight),
-                    [=] { return integrate<reference::Adams>(make(), {tight, tight}); }});
+  add_references(c, make, tight);
   add_integrators(c, make, brief ? std::vector{1e-5} : std::vector{1e-4, 1e-6, 1e-8},
                   brief ? std::vector<double>{} : std::vector{1e-4, 1e-6});
   c.unperturbed = c.runs.size();
@@ -152,12 +158,7 @@ Comparison dome(bool brief) {
   if (brief) smooth.blank.element_size = 20;
   const auto make = [smooth] { return dome_case<double>(smooth); };
   const double tight = brief ? 1e-7 : 1e-9;
-  c.time_reference = c.runs.size();
-  c.runs.push_back({"reference", fmt::format("Runge-Kutta 5, {:g}", tight),
-                    [=] { return integrate<reference::RungeKutta5>(make(), {tight, tight}); }});
-  c.second_opinion = c.runs.size();
-  c.runs.push_back({"second opinion", fmt::format("Adams, {:g}", tight),
-                    [=] { return integrate<reference::Adams>(make(), {tight, tight}); }});
+  add_references(c, make, tight);
   add_integrators(c, make, brief ? std::vector<double>{} : std::vector{1e-4, 1e-6}, {});
   c.unperturbed = c.runs.size();
   for (double f : {0.9, 0.45, 0.225})
