@@ -20,8 +20,8 @@ std::string preset_table() {
   std::string text;
   for (const Preset& p : presets)
     text += fmt::format(
-        "  {:9} {:3g} mm, {:g} m/s, {:6}  positions {:4.1f} %, shear rms {:.2f} deg (99 % of the area "
-        "{:.1f}), outline {:.1f} mm; {:.0f} s\n",
+        "  {:9} {:3g} mm, {:g} m/s, {:6}  positions {:.2f} %, shear rms {:.2f} deg (99 % of the area "
+        "{:.1f}), outline {:.2f} mm; {:.0f} s\n",
         p.name, p.element_size, p.speed, p.precision == Precision::float_ ? "float" : "double",
         100 * p.error.position, p.error.shear_rms_deg, p.error.shear_quantile_deg,
         p.error.outline_mm, p.processor_s);

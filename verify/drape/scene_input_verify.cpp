@@ -406,7 +406,7 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
     CHECK(preset.error.position > 0);
     CHECK(preset.processor_s > 0);
     check_contains(parse_options({"--help"}).message,
-                   {preset.name, fmt::format("{:.1f} %", 100 * preset.error.position)});
+                   {preset.name, fmt::format("{:.2f} %", 100 * preset.error.position)});
   }
   const DrapeCase changed = parse_options({"--preset", "fast", "--speed", "3"}).drape_case;
   CHECK(changed.process.speed == 3);
