@@ -11,7 +11,7 @@
 #include "support/report.hpp"
 #include "support/ring.hpp"
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 
 #include <cmath>
 #include <string>

@@ -14,7 +14,7 @@
 #include "support/report.hpp"
 #include "support/ring.hpp"
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
 

@@ -5,6 +5,7 @@
 /// Units: kN, mm, ms, kg (so velocities are in m/s and energies in J = kN mm).
 
 #include "crossbeam/cell/parameters.hpp"
+#include "crossbeam/contact/tool_contact.hpp"
 #include "crossbeam/law/shear.hpp"
 
 #include <cstdint>
@@ -15,7 +16,6 @@ namespace crossbeam::drape {
 
 enum class CellFormulation { energy, second_order };  ///< E-U, or Eq. 24-25 as printed
 enum class ShearLawKind { constant, polynomial, tabulated };
-enum class FrictionModel { elastic_stick, viscous };
 enum class Precision { double_, float_ };
 
 struct ShearInput {
@@ -64,8 +64,9 @@ struct ContactInput {
   double penalty = 0.05;        ///< contact pressure per penetration [kN/mm^3]
   double damping_ratio = 0.2;   ///< of a node on the penalty [-]
   double friction = 0.2;        ///< Coulomb coefficient, fabric on tool [-]
-  FrictionModel friction_model = FrictionModel::elastic_stick;
-  double viscous_slip = 0.02;   ///< viscous model: full-friction slip as a share of the speed [-]
+  Friction friction_model = Friction::elastic_stick;
+  double viscous_slip = 0.02;   ///< viscous, smooth: full-friction slip as a share of the speed [-]
+  double smoothing = 0;         ///< depth over which the penalty sets in; 0: at once [mm]
   double table_spacing = 0.5;   ///< of the tabulated tool surface [mm]
   bool culling = true;          ///< skip nodes that provably cannot touch a tool
 };
@@ -85,6 +86,7 @@ struct OutputInput {
 struct DrapeCase {
   std::string name;
   std::string description;
+  std::string preset;  ///< of the command line; empty without (presets.hpp)
   FabricInput fabric{};
   BlankInput blank{};
   ProcessInput process{};

@@ -1,6 +1,7 @@
 #include "drape.hpp"
 
 #include "formed_part.hpp"
+#include "quarter_model.hpp"
 
 #include "crossbeam/crossbeam.hpp"
 
@@ -9,7 +10,6 @@
 #include <ctime>
 #include <numbers>
 #include <optional>
-#include <random>
 
 namespace crossbeam::drape {
 
@@ -24,14 +24,6 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Punch travel: a cosine over the stroke, then held.
-struct PunchStroke {
-  double stroke, duration;
-  double operator()(double t) const {
-    return t >= duration ? stroke : stroke / 2 * (1 - std::cos(pi * t / duration));
-  }
-};
-
 /// A quarter drape in one precision: mesh, blocks, tools and the loop.
 template <class R>
 class QuarterDrape {
@@ -39,21 +31,7 @@ class QuarterDrape {
   using T = NativePack<R>;
 
   explicit QuarterDrape(const DrapeCase& c)
-      : case_(c),
-        grid_{std::max(1, static_cast<int>(std::lround(c.blank.half_width / c.blank.element_size))),
-              std::max(1, static_cast<int>(std::lround(c.blank.half_length / c.blank.element_size))),
-              c.blank.half_width, c.blank.half_length},
-        mesh_(rectangle(c.blank.half_width, c.blank.half_length, grid_.nx, grid_.ny,
-                        c.blank.layout * pi / 180)),
-        punch_{c.process.stroke, c.process.stroke / c.process.speed},
-        integrator_(initial_state(), c.fabric.areal_mass, c.integration.mass_damping) {
-    add_membrane();
-    if (c.fabric.warp_bending_stiffness > 0 || c.fabric.weft_bending_stiffness > 0)
-      integrator_.add(std::make_unique<BendingSweep<T>>(
-          mesh_,
-          BendingStiffness{c.fabric.warp_bending_stiffness, c.fabric.weft_bending_stiffness},
-          c.fabric.areal_mass, symmetry_));
-    add_tools();
+      : case_(c), built_(c), integrator_(built_.release()) {
     // Faster than sound in the yarns nothing in this model moves, unless the yarns are softer than
     // the punch is slow.
     const double bound = CrossedBeamCell<double>(c.fabric.cell).membrane_stiffness_bound();
@@ -101,121 +79,6 @@ class QuarterDrape {
   }
 
  private:
-  NodalState<R> initial_state() const {
-    NodalState<R> state(mesh_, case_.fabric.areal_mass, symmetry_constraints(mesh_, symmetry_));
-    if (case_.blank.perturbation > 0) {
-      std::mt19937_64 random(case_.blank.seed);
-      // Spelled out, so that every standard library gives the same numbers.
-      const auto uniform = [&] {
-        return case_.blank.perturbation *
-               (static_cast<double>(random() >> 11) * 0x1.0p-52 - 1.0);
-      };
-      for (int n = 0; n < mesh_.node_count; ++n) {
-        const Vec3<double> X = mesh_.nodes.get(n);
-        const double dx = uniform(), dy = uniform(), dz = uniform();
-        state.x.set(n, {R(X.x + dx * static_cast<double>(state.free.x[n])),
-                        R(X.y + dy * static_cast<double>(state.free.y[n])), R(X.z + dz)});
-      }
-    }
-    return state;
-  }
-
-  void add_membrane() {
-    const FabricInput& fabric = case_.fabric;
-    if (fabric.formulation == CellFormulation::energy)
-      add_membrane_with(CrossedBeamCell<R>(fabric.cell.template cast<R>()));
-    else
-      add_membrane_with(SecondOrderCell<R>(fabric.cell.template cast<R>()));
-  }
-
-  template <class Cell>
-  void add_membrane_with(const Cell& cell) {
-    const ShearInput& shear = case_.fabric.shear;
-    const auto angle = FibreAngle<R>::right();
-    const auto real = [](const std::vector<double>& v) { return std::vector<R>(v.begin(), v.end()); };
-    switch (shear.kind) {
-      case ShearLawKind::constant:
-        return add_membrane_with(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure));
-      case ShearLawKind::polynomial:
-        return add_membrane_with(
-            cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle));
-      case ShearLawKind::tabulated:
-        return add_membrane_with(
-            cell, TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)),
-                                    angle));
-    }
-  }
-
-  template <class Cell, class Shear>
-  void add_membrane_with(const Cell& cell, const Shear& shear) {
-    const WovenMembrane<Cell, Shear> law(cell, shear, FibreAngle<R>::right(), YarnWidth::corrected,
-                                         SolverControl::fixed(case_.fabric.cell_sweeps));
-    const MembraneOptions options{case_.blank.hourglass_stiffness,
-                                  case_.integration.bulk_viscosity};
-    if (case_.blank.gauss_points == 1)
-      add_block<Quadrilateral<1>>(law, options);
-    else
-      add_block<Quadrilateral<4>>(law, options);
-  }
-
-  template <class Element, class Law>
-  void add_block(const Law& law, const MembraneOptions& options) {
-    integrator_.add(std::make_unique<MembraneSweep<T, Element, Law>>(
-        mesh_, law, case_.fabric.areal_mass, options));
-  }
-
-  /// Punch below, die above, holder ring below. The fabric's mid-surface starts on the die flange, at
-  /// z = 0; the tools' contact surfaces are theirs, moved by half the thickness.
-  void add_tools() {
-    const double half_thickness = case_.fabric.thickness / 2;
-    const double play = 5.0 / 3.0;  // between punch and die when closed, along the normal [mm]
-    ContactParameters contact;
-    contact.penalty = case_.contact.penalty;
-    contact.damping_ratio = case_.contact.damping_ratio;
-    contact.friction = case_.contact.friction;
-    contact.friction_model = case_.contact.friction_model == FrictionModel::elastic_stick
-                                 ? Friction::elastic_stick
-                                 : Friction::viscous;
-    contact.slip_speed = case_.contact.viscous_slip * case_.process.speed;
-    contact.culling = case_.contact.culling;
-
-    const double die_offset = play - half_thickness;
-    const auto surface = [&](double offset, Side side) {
-      const DoubleDome<double> exact({}, offset);
-      // The tools are flat beyond x = 86 and y = 186 mm.
-      const HeightTableGrid<R> grid{R(0),   R(100), R(0), R(200), R(case_.contact.table_spacing),
-                                    true, true};
-      return HeightSurface<HeightTable<R>>(HeightTable<R>(exact, grid), side);
-    };
-    const auto add = [&](auto shape, ToolMotion motion) {
-      integrator_.add(std::make_unique<RigidToolContact<T, decltype(shape)>>(
-          std::move(shape), std::move(motion), contact, mesh_.node_count));
-    };
-    // Closed, both flange planes coincide; the punch starts with its top level with the die's flange.
-    const double closed = -die_offset, open = closed - DoubleDomeParameters<double>{}.depth;
-    add(surface(half_thickness, Side::above),
-        ToolMotion::prescribed([=, p = punch_](double t) { return open + p(t); }));
-    add(surface(die_offset, Side::below), ToolMotion::prescribed([=](double) { return closed; }));
-
-    const StadiumRing<R> ring({}, R(half_thickness));
-    const StadiumRing<double> plan;
-    double held_area = 0;
-    const std::vector<double> area = mesh_.tributary_areas();
-    for (int n = 0; n < mesh_.node_count; ++n) {
-      const Vec3<double> X = mesh_.nodes.get(n);
-      if (plan.gap(Vec3<double>{X.x, X.y, 0}).gap <= 1e-9) held_area += area[n];
-    }
-    const double quarter_mass = case_.process.holder_mass / 4;
-    const double ramp = case_.process.holder_ramp * punch_.duration;
-    const double rate = 2 * case_.process.holder_damping_ratio *
-                        std::sqrt(case_.contact.penalty * held_area / quarter_mass);
-    add(ring, ToolMotion::free_under(
-                  [=, F = case_.process.holder_force / 4](double t) {
-                    return ramp > 0 ? F * std::min(t / ramp, 1.0) : F;
-                  },
-                  quarter_mass, rate, -half_thickness));
-  }
-
   std::vector<ElementSample> sample() const {
     std::vector<ElementSample> samples;
     for (const auto& block : integrator_.blocks()) block->sample(integrator_.state(), samples);
@@ -227,8 +90,8 @@ class QuarterDrape {
     LedgerRow row;
     row.time = ledger.time;
     row.stroke = stroke;
-    row.punch_work = tools[0]->work().tool;
-    row.holder_work = tools[2]->work().tool;
+    row.punch_work = tools[punch_tool]->work().tool;
+    row.holder_work = tools[holder_tool]->work().tool;
     row.yarn = ledger.internal.yarn;
     row.shear = ledger.internal.shear;
     row.bending = ledger.internal.bending;
@@ -371,10 +234,10 @@ class QuarterDrape {
   }
 
   DrapeCase case_;
-  QuarterGrid grid_;
-  SymmetryPlanes symmetry_{true, true};
-  Mesh<4> mesh_;
-  PunchStroke punch_;
+  QuarterModel<R> built_;
+  const QuarterGrid& grid_ = built_.grid();
+  const Mesh<4>& mesh_ = built_.mesh();
+  const PunchStroke& punch_ = built_.punch();
   CentralDifference<T> integrator_;
   DrapeResult result_;
 };

@@ -71,10 +71,10 @@ constexpr auto names_of(ShearMeasure) {
   using E = ShearMeasure;
   return std::array<NamedValue<E>, 2>{{{E::tensor, "tensor"}, {E::engineering, "engineering"}}};
 }
-constexpr auto names_of(FrictionModel) {
-  using E = FrictionModel;
-  return std::array<NamedValue<E>, 2>{
-      {{E::elastic_stick, "elastic_stick"}, {E::viscous, "viscous"}}};
+constexpr auto names_of(Friction) {
+  using E = Friction;
+  return std::array<NamedValue<E>, 3>{
+      {{E::elastic_stick, "elastic_stick"}, {E::viscous, "viscous"}, {E::smooth, "smooth"}}};
 }
 constexpr auto names_of(Precision) {
   using E = Precision;
@@ -164,6 +164,7 @@ void visit_fields(Case& c, Visitor& v) {
   v.real("friction", c.contact.friction, "-", from_to(0, 1));
   v.choice("friction_model", c.contact.friction_model);
   v.real("viscous_slip", c.contact.viscous_slip, "-", above_to(0, 1));
+  v.real("smoothing", c.contact.smoothing, "mm", from_to(0, 1));
   v.real("table_spacing", c.contact.table_spacing, "mm", from_to(0.05, 5));
   v.flag("culling", c.contact.culling);
   v.leave();

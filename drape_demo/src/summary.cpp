@@ -3,6 +3,7 @@
 #include "fields.hpp"
 #include "interrupt.hpp"
 #include "ledger_terms.hpp"
+#include "presets.hpp"
 #include "text_file.hpp"
 #include "vtu.hpp"
 
@@ -166,6 +167,16 @@ nlohmann::ordered_json summary_json(const DrapeCase& drape_case, const DrapeResu
   json["version"] = CROSSBEAM_VERSION;
   json["written"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   json["units"] = "mm, ms, kN, kg, deg; energies of the quarter model in kN mm";
+
+  if (const Preset* preset = preset_of(drape_case))
+    json["preset"] = {{"name", preset->name},
+                      {"measured_error",
+                       {{"scene", "realistic"},
+                        {"against", "2.5 mm, 0.5 m/s, double"},
+                        {"position", preset->error.position},
+                        {"shear_rms_deg", preset->error.shear_rms_deg},
+                        {"shear_quantile_deg", preset->error.shear_quantile_deg},
+                        {"outline_mm", preset->error.outline_mm}}}};
 
   Json points = Json::array();
   for (const auto& point : result.shear_points)

@@ -3,6 +3,7 @@
 /// Everything but the adapters. The order is the way the data flow: parameters -> cell -> law ->
 /// element -> mesh -> contact -> time step. A header includes its own folder and those before it.
 
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/linalg.hpp"
 #include "crossbeam/base/scalar.hpp"
@@ -28,6 +29,7 @@
 #include "crossbeam/mesh/batches.hpp"
 #include "crossbeam/mesh/mesh.hpp"
 #include "crossbeam/mesh/nodal_state.hpp"
+#include "crossbeam/mesh/tangent_entries.hpp"
 
 #include "crossbeam/contact/double_dome.hpp"
 #include "crossbeam/contact/height_surface.hpp"
@@ -38,5 +40,8 @@
 
 #include "crossbeam/dynamics/bending_sweep.hpp"
 #include "crossbeam/dynamics/central_difference.hpp"
+#include "crossbeam/dynamics/first_order_system.hpp"
 #include "crossbeam/dynamics/ledger.hpp"
 #include "crossbeam/dynamics/membrane_sweep.hpp"
+#include "crossbeam/dynamics/model.hpp"
+#include "crossbeam/dynamics/statics.hpp"

@@ -3,7 +3,7 @@
 // see to round-off).
 
 #include "cell/states.hpp"
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
 
 #include "support/claim.hpp"

@@ -1,7 +1,7 @@
 // The theorems of the cell, scanned over fabrics far beyond those that are woven: one counter each.
 
 #include "cell/states.hpp"
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 
 #include "support/claim.hpp"
 

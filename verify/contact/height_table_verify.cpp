@@ -1,7 +1,7 @@
 // The tabulated height field: consistency of value and gradient, accuracy on the double dome,
 // packs, bad input.
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/contact/double_dome.hpp"
 #include "crossbeam/contact/height_surface.hpp"

@@ -1,7 +1,7 @@
 // Plane, sphere, cylinder and blank holder: signed distances against a plain search for the closest
 // point on an independent parametrisation of the same body.
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/contact/primitives.hpp"
 #include "crossbeam/contact/stadium_ring.hpp"
 

@@ -456,6 +456,80 @@ TEST_CASE("V-CONT-27 a tool drags a resting plate along until both move alike") 
   claim("V-CONT-27", std::abs((z1 - z2) / (z2 - z3) - 4), 0.15, "riding: ratio of errors, off 4");
 }
 
+TEST_CASE("V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's law far from rest") {
+  // One plate of four nodes on a plane, pressed to a depth and moved by hand.
+  constexpr double e = 0.2, kp = 0.05, mu = 0.3, v_s = 0.1;
+  const Mesh<4> plate = rectangle(2, 2, 1, 1);
+  NodalState<double> state(plate, areal_mass);
+  ContactParameters p;
+  p.penalty = kp;
+  p.friction = mu;
+  p.friction_model = Friction::smooth;
+  p.slip_speed = v_s;
+  p.smoothing = e;
+  const auto answer = [&](double depth, const Vec3<double>& v) {
+    RigidToolContact<Lane, Plane<double>> contact(Plane<double>({0, 0, 0}, {0, 0, 1}),
+                                                  ToolMotion::fixed(), p, 4);
+    for (int n = 0; n < 4; ++n) {
+      state.x.z[n] = -depth;
+      state.f.set(n, {0, 0, 0});
+      state.v.set(n, v);
+      state.v_centre.set(n, v);
+    }
+    contact.add_forces(state, 1, 0);
+    struct Answer {
+      Vec3<double> force;
+      double energy;
+    };
+    return Answer{state.f.get(0), contact.stored_energy() / 4};
+  };
+  const double k = kp * state.area[0], none = 0;
+
+  // Closed forms by hand: the stiffness rises as 3 u^2 - 2 u^3 and stays.
+  verify::Worst force, slope, kink, friction;
+  const auto stiffness = [&](double d) {
+    const double u = std::min(d / e, 1.0);
+    return k * u * u * (3 - 2 * u);
+  };
+  for (int i = 0; i <= 60; ++i) {
+    const double d = 0.01 * i, h = 1e-4;
+    // Simpson's rule of the stiffness is exact for the cubic, on either side of e.
+    const auto integral = [&](double a, double b) {
+      return (b - a) / 6 * (stiffness(a) + 4 * stiffness((a + b) / 2) + stiffness(b));
+    };
+    const double expected = integral(0, std::min(d, e)) + integral(std::min(d, e), d);
+    force.see(std::abs(answer(d, {}).force.z - expected) / (k * e), "depth", d);
+    if (i == 0) continue;
+    slope.see(std::abs((answer(d + h, {}).energy - answer(d - h, {}).energy) / (2 * h) -
+                       answer(d, {}).force.z) / (k * e),
+              "depth", d);
+    const double derivative = (answer(d + h, {}).force.z - answer(d - h, {}).force.z) / (2 * h);
+    CHECK(derivative <= k * (1 + 1e-9));  // never stiffer than the bound of the step
+  }
+  // Second differences are bounded by 1.5 k/e where a kink would give k/h.
+  for (double d : {0.0, e})
+    for (double h : {1e-3, 1e-4, 1e-5})
+      kink.see(std::abs(answer(d + h, {}).force.z - 2 * answer(d, {}).force.z +
+                        (d > h ? answer(d - h, {}).force.z : none)) / (h * h) / (1.5 * k / e),
+               "depth", d, "step", h);
+  for (double v : {1e-3, 0.1, 0.5, 10.0}) {
+    const auto a = answer(0.5, {0.6 * v, -0.8 * v, 0});
+    const double size = std::hypot(a.force.x, a.force.y);
+    friction.see(std::abs(size / (mu * a.force.z) - v / std::hypot(v, v_s)), "speed", v);
+    friction.see(std::abs(a.force.x * 0.8 + a.force.y * 0.6) / size, "direction", v);
+    CHECK(a.force.x < 0);
+  }
+  CHECK(std::hypot(answer(0.5, {100, 0, 0}).force.x, 0.0) / answer(0.5, {}).force.z ==
+        doctest::Approx(mu).epsilon(1e-6));
+  // Damping rises with the stiffness, and never pulls.
+  CHECK(answer(0.01 * e, {0, 0, -1}).force.z < 1e-3 * answer(2 * e, {0, 0, -1}).force.z);
+  CHECK(answer(0.5 * e, {0, 0, 100}).force.z == 0);
+  force.claim("V-CONT-29", 1e-14, "force against the integral of the stiffness");  // ten roundings
+  slope.claim("V-CONT-29", 1e-6, "force against differences of the energy");  // h^2 / (6 e^2)
+  kink.claim("V-CONT-29", 1.01, "second differences over the largest curvature");
+  friction.claim("V-CONT-29", 1e-14, "friction against v / (v^2 + v_s^2)^(1/2)");
+}
+
 TEST_CASE("V-CONT-28 bad contact input is refused by field, value and range") {
   struct Case {
     const char* field;

@@ -136,8 +136,8 @@ void show_points(const std::string& id, const DrapeResult& r, const std::string&
 
 DrapeCase with_study_friction(double element_size, double speed) {
   DrapeCase c = realistic(element_size, speed);
-  REQUIRE(c.contact.friction_model == drape::FrictionModel::elastic_stick);
-  c.contact.friction_model = drape::FrictionModel::viscous;
+  REQUIRE(c.contact.friction_model == crossbeam::Friction::elastic_stick);
+  c.contact.friction_model = crossbeam::Friction::viscous;
   return c;
 }
 

@@ -3,6 +3,7 @@
 #include "interrupt.hpp"
 #include "ledger_terms.hpp"
 #include "output_folder.hpp"
+#include "presets.hpp"
 #include "progress.hpp"
 #include "references.hpp"
 #include "scene.hpp"
@@ -398,6 +399,12 @@ TEST_CASE("V-IO-12 summary.json has the promised keys with the run's values") {
   CHECK(json["cost"]["ns_per_element_step"] == 100.5);
   for (const char* key : {"program", "version", "units", "machine", "build", "references"})
     CHECK_MESSAGE(json.contains(key), key);
+  CHECK_FALSE(json.contains("preset"));
+  DrapeCase fast;
+  apply_preset(fast, "fast");
+  const auto with_preset = summary_json(fast, result, references());
+  CHECK(with_preset["preset"]["name"] == "fast");
+  CHECK(with_preset["preset"]["measured_error"]["position"] == presets[0].error.position);
   CHECK(json["references"]["net"]["shear_deg"].size() == 10);
   CHECK(json["references"]["study"]["shear_deg"].size() == 8);
 }
@@ -406,7 +413,7 @@ TEST_CASE("V-IO-12 summary.json holds every field of the case") {
   DrapeCase c = some_case();
   c.blank.seed = 9007199254740993u;  // 2^53 + 1: lost where integers pass through double
   c.process.speed = 0.1;
-  c.contact.friction_model = FrictionModel::viscous;
+  c.contact.friction_model = crossbeam::Friction::viscous;
   const auto json = nlohmann::json::parse(case_json(c).dump());
   for (const auto& field : field_names()) {
     std::string pointer = "/" + field;

@@ -2,6 +2,7 @@
 // the name of the field, the value, the place and what would be admissible.
 
 #include "options.hpp"
+#include "presets.hpp"
 #include "references.hpp"
 #include "scene.hpp"
 
@@ -10,6 +11,7 @@
 #include "drape/scratch_folder.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -125,9 +127,11 @@ const std::vector<OutOfRange>& out_of_range() {
       {"contact.damping_ratio", "1.1", "", "<= 1"},
       {"contact.friction", "-0.1", "", ">= 0"},
       {"contact.friction", "1.1", "", "<= 1"},
-      {"contact.friction_model", "'dry'", "", "elastic_stick or viscous"},
+      {"contact.friction_model", "'dry'", "", "elastic_stick, viscous or smooth"},
       {"contact.viscous_slip", "0.0", "", "> 0"},
       {"contact.viscous_slip", "1.1", "", "<= 1"},
+      {"contact.smoothing", "-0.1", "mm", ">= 0"},
+      {"contact.smoothing", "1.1", "mm", "<= 1"},
       {"contact.table_spacing", "0.0", "mm", ">= 0.05"},
       {"contact.table_spacing", "6.0", "mm", "<= 5"},
       {"integration.step_factor", "0.0", "", "> 0"},
@@ -288,7 +292,7 @@ TEST_CASE("V-IO-05 the supplied scenes hold the documented values") {
     CHECK(c->contact.friction == 0.2);
     CHECK(c->contact.penalty == 0.05);
     CHECK(c->contact.damping_ratio == 0.2);
-    CHECK(c->contact.friction_model == FrictionModel::elastic_stick);
+    CHECK(c->contact.friction_model == crossbeam::Friction::elastic_stick);
     CHECK(c->integration.step_factor == 0.9);
     CHECK(c->integration.mass_damping == 0.02);
     CHECK(c->integration.bulk_viscosity == 0.06);
@@ -392,6 +396,23 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
   CHECK(stiff.fabric.warp_bending_stiffness == 1.4e-3);
   CHECK(parse_options({"--holder", "0"}).drape_case.process.holder_force == 0);
 
+  // A preset sets mesh, speed and arithmetic; an option beside it wins, and then it is no preset.
+  for (const Preset& preset : presets) {
+    const DrapeCase c = parse_options({"--preset", preset.name}).drape_case;
+    CHECK(c.blank.element_size == preset.element_size);
+    CHECK(c.process.speed == preset.speed);
+    CHECK(c.integration.precision == preset.precision);
+    CHECK(preset_of(c) == &preset);
+    CHECK(preset.error.position > 0);
+    CHECK(preset.processor_s > 0);
+    check_contains(parse_options({"--help"}).message,
+                   {preset.name, fmt::format("{:.2f} %", 100 * preset.error.position)});
+  }
+  const DrapeCase changed = parse_options({"--preset", "fast", "--speed", "3"}).drape_case;
+  CHECK(changed.process.speed == 3);
+  CHECK(preset_of(changed) == nullptr);
+  CHECK(preset_of(parse_options({}).drape_case) == nullptr);
+
   check_contains(parse_options({"--help"}).message, {"--case", "[m/s]", "0 or 45", "Examples"});
   check_contains(parse_options({"--version"}).message, {"crossbeam 0."});
 
@@ -404,6 +425,8 @@ TEST_CASE("V-IO-07 a bad option is refused by its name, value and range") {
   check_contains(options_refusal({"--speed", "-3"}), {"--speed = -3 [m/s]", "> 0 and <= 100"});
   check_contains(options_refusal({"--speed", "fast"}), {"--speed = fast [m/s]", "> 0 and <= 100"});
   check_contains(options_refusal({"--speed", "nan"}), {"--speed = nan [m/s]", "> 0 and <= 100"});
+  check_contains(options_refusal({"--preset", "best"}),
+                 {"--preset = best", "fast, standard or accurate"});
   check_contains(options_refusal({"--layout", "30"}), {"--layout = 30 [deg]", "0 or 45"});
   check_contains(options_refusal({"--points", "2"}), {"--points = 2", "1 or 4"});
   check_contains(options_refusal({"--mesh", "100"}), {"--mesh = 100 [mm]", "67.5"});

@@ -2,7 +2,7 @@
 // side of the patch test knows no shape function: a constant first Piola-Kirchhoff stress P loads
 // the border of a patch with P N per length and leaves its inside in equilibrium.
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "element/manufactured_load.hpp"
 #include "element/patches.hpp"
 #include "support/claim.hpp"

@@ -1,7 +1,7 @@
 // S = 2 dW/dC and its tangent, for every shear layer and oblique fibres: by the rate of Taylor
 // remainders and by dual numbers.
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
 
 #include "law/laws.hpp"

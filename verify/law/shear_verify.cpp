@@ -1,7 +1,7 @@
 // Shear layers: their tractions and moduli against independent integration, their measures and
 // frames, their derivatives by nested dual numbers, and what they refuse.
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
 

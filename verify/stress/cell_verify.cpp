@@ -5,7 +5,7 @@
 #include "fuzz/properties.hpp"
 #include "support/claim.hpp"
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
 
 #include <doctest/doctest.h>

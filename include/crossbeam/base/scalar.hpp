@@ -1,7 +1,7 @@
 #pragma once
 /// @file
 /// What a kernel may ask of its scalar. Every kernel is one template that runs on float, double,
-/// long double, multiprecision numbers, dual numbers (adapters/autodiff.hpp) and SIMD packs
+/// long double, multiprecision numbers, dual numbers (base/dual.hpp) and SIMD packs
 /// (base/simd.hpp). It therefore never branches on a value: it compares, gets a mask (bool or a
 /// lane mask) and selects.
 

@@ -3,8 +3,10 @@
 /// Contact of the fabric's nodes with one rigid tool: penalty with damping, Coulomb friction,
 /// culling of the nodes that provably cannot touch. Theory: docs/theory/contact.md.
 
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/contact/surface.hpp"
 #include "crossbeam/mesh/nodal_state.hpp"
+#include "crossbeam/mesh/tangent_entries.hpp"
 
 #include <functional>
 #include <memory>
@@ -15,6 +17,7 @@ namespace crossbeam {
 enum class Friction {
   elastic_stick,  ///< elastic stick and return mapping onto Coulomb's cone, tag [F-2]
   viscous,        ///< slip-rate regularised, impulse capped, tag [F-3]
+  smooth,         ///< slip-rate regularised without a kink or a cap, tag [F-6]
 };
 
 struct ContactParameters {
@@ -23,7 +26,8 @@ struct ContactParameters {
   double friction = 0.2;        ///< Coulomb coefficient [-]; >= 0
   Friction friction_model = Friction::elastic_stick;
   double stick_ratio = 0.5;     ///< tangential over normal penalty [-]; > 0 (elastic stick)
-  double slip_speed = 0.04;     ///< speed of full friction [mm/ms]; > 0 (viscous)
+  double slip_speed = 0.04;     ///< speed of full friction [mm/ms]; > 0 (viscous, smooth)
+  double smoothing = 0;         ///< depth over which the penalty sets in [mm]; 0: at once, tag [F-5]
   bool culling = true;          ///< skip batches of nodes that cannot have reached the tool
 };
 
@@ -33,25 +37,28 @@ inline void validate(const ContactParameters& p, const std::string& prefix = "co
   require_non_negative(prefix + ".friction", p.friction, "-");
   require_positive(prefix + ".stick_ratio", p.stick_ratio, "-");
   require_positive(prefix + ".slip_speed", p.slip_speed, "mm/ms");
+  require_non_negative(prefix + ".smoothing", p.smoothing, "mm");
 }
 
 /// How a tool moves along z: prescribed, or free under a given force.
 struct ToolMotion {
   std::function<double(double)> position;  ///< z(t) [mm]; prescribed when set
+  std::function<double(double)> velocity;  ///< dz/dt [mm/ms]; only methods without steps ask for it
   std::function<double(double)> force;     ///< applied F_z(t) [kN] of a free tool
   double mass = 0;                         ///< of a free tool [kg]
   double damping_rate = 0;                 ///< of a free tool [1/ms]
   double start = 0;                        ///< z(0) of a free tool [mm]
 
   static ToolMotion fixed() {
-    return {[](double) { return 0.0; }, {}, 0, 0, 0};
+    return {[](double) { return 0.0; }, [](double) { return 0.0; }, {}, 0, 0, 0};
   }
-  static ToolMotion prescribed(std::function<double(double)> z) {
-    return {std::move(z), {}, 0, 0, 0};
+  static ToolMotion prescribed(std::function<double(double)> z,
+                               std::function<double(double)> velocity = {}) {
+    return {std::move(z), std::move(velocity), {}, 0, 0, 0};
   }
   static ToolMotion free_under(std::function<double(double)> F, double mass, double damping_rate,
                                double start = 0) {
-    ToolMotion motion{{}, std::move(F), mass, damping_rate, start};
+    ToolMotion motion{{}, {}, std::move(F), mass, damping_rate, start};
     validate(motion);
     return motion;
   }
@@ -104,6 +111,20 @@ class ToolContact {
   [[nodiscard]] virtual double omega_squared(double areal_mass, double area) const = 0;
   /// Bound of its share in the damping rate c/m [1/ms].
   [[nodiscard]] virtual double damping_rate(double areal_mass, double area) const = 0;
+  /// Whether these forces are a function of positions and velocities alone: no step, no memory.
+  [[nodiscard]] virtual bool is_rate_form() const = 0;
+  /// Adds -df/dx and -df/dv of a contact in rate form at state.x, state.v, tag [R-2].
+  /// @param tool_row row of this tool where it is free, else -1
+  virtual void add_tangent(const NodalState<R>& state, int tool_row, TangentEntries& tangent) const = 0;
+
+  /// @name Statics: the forces at rest, tag [R-4]
+  /// @{
+  /// Positions from which the elastic stick is stretched further by what comes: those of its last
+  /// step.
+  virtual void come_to_rest(const NodalState<R>& state) = 0;
+  /// Forces at rest at state.x, with their tangent on request. @return force on the fabric along z
+  virtual double add_rest_forces(NodalState<R>& state, int tool_row, TangentEntries* tangent) const = 0;
+  /// @}
 
   /// Moves the tool from t_n to t_{n+1}; after add_forces, before book.
   /// @return distance moved [mm]
@@ -127,7 +148,19 @@ class ToolContact {
     return std::abs(v_plus_) * dt;
   }
 
+  /// Forgets what is known about clearances: `travel` begins anew.
+  virtual void reset_culling() = 0;
+
+  /// Puts the tool to a place and a velocity, for methods that keep their own time: the next
+  /// add_forces takes both as those of its instant.
+  void place(double z, double velocity) {
+    z_ = z;
+    v_minus_ = v_plus_ = velocity;
+  }
+
+  [[nodiscard]] const ToolMotion& motion() const { return motion_; }
   [[nodiscard]] double position() const { return z_; }
+  [[nodiscard]] double velocity() const { return v_plus_; }
   [[nodiscard]] const ContactWork& work() const { return work_; }
   /// Kinetic energy of a free tool at t_n, as v_{n-1/2} v_{n+1/2} m/2; after advance.
   [[nodiscard]] double kinetic_energy() const { return motion_.mass * v_minus_ * v_plus_ / 2; }
@@ -185,16 +218,15 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   }
 
   void add_forces(NodalState<R>& state, double dt, double travel) override {
-    const T kp(static_cast<R>(parameters_.penalty)), zeta2(R(2 * parameters_.damping_ratio));
-    const T mu(static_cast<R>(parameters_.friction));
-    const T kt_ratio(static_cast<R>(parameters_.stick_ratio));
+    const T kp(static_cast<R>(parameters_.penalty)), mu(static_cast<R>(parameters_.friction));
     const T step(static_cast<R>(started_ ? dt : 0.0));  // no slip has happened before t = 0
     const T half_over_dt(static_cast<R>(0.5 / dt));
-    const T slip(static_cast<R>(parameters_.slip_speed));
+    const T slip_speed(static_cast<R>(parameters_.slip_speed));
     const T tool_z(static_cast<R>(this->z_)), tool_v(static_cast<R>(this->v_plus_));
     const T tool_v_now(static_cast<R>(this->predicted_velocity()));
     const bool sticks = parameters_.friction_model == Friction::elastic_stick;
-    const T zero(R(0)), tiny(std::numeric_limits<R>::min());
+    const bool smooth = parameters_.friction_model == Friction::smooth;
+    const T zero(R(0));
     Vec3<double> sum{};
     stored_ = 0;
     for (int b = 0; b < batches_; ++b) {
@@ -219,49 +251,43 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const Vec3<T> v_now = state.predicted_velocity(v_half, load<T>(state.v_centre, n));
       const T penetration = select(touching, -at.gap, zero);
       const T k = kp * area;
-      const T elastic = k * penetration;
-
-      // Normal damping never pulls: the total stays a pressure [F-1].
-      using std::sqrt;
       const T closing = -(dot(v_now, at.normal) - tool_v_now * at.normal.z);
-      const T viscous = select(touching, maximum(zeta2 * sqrt(k * m) * closing, -elastic), zero);
-      const T pressure = elastic + viscous;
+      const Normal<T> normal = normal_force(penetration, k, m, closing, touching);
 
-      Vec3<T> slip_rate = v_half;
-      slip_rate.z = slip_rate.z - tool_v;
-      slip_rate = slip_rate - dot(slip_rate, at.normal) * at.normal;
       Vec3<T> t, xi = load<T>(stick_, n);
-      if (sticks) {  // [F-2]
-        const T kt = kt_ratio * k;
-        xi = xi + step * slip_rate;
-        xi = xi - dot(xi, at.normal) * at.normal;
-        const T c = minimum(zeta2 * sqrt(kt * m), m * half_over_dt);
-        t = T(R(-1)) * (kt * xi + c * slip_rate);
-        const T size = sqrt(dot(t, t));
-        const T limit = mu * pressure;
-        const T scale = select(size > limit, limit / maximum(size, tiny), T(R(1)));
-        t = select_lanes(touching, scale * t);
-        const auto slips = (size > limit) && touching;
-        const T inv_kt = T(R(-1)) / maximum(kt, tiny);
-        xi = {select(slips, inv_kt * t.x, xi.x), select(slips, inv_kt * t.y, xi.y),
-              select(slips, inv_kt * t.z, xi.z)};
+      if (smooth) {
+        t = smooth_friction(slip(v_now, tool_v_now, at.normal), normal.pressure);
+      } else if (sticks) {
+        const Vec3<T> slip_rate = slip(v_half, tool_v, at.normal);
+        using std::sqrt;
+        const T c = minimum(T(R(2 * parameters_.damping_ratio)) *
+                                sqrt(T(static_cast<R>(parameters_.stick_ratio)) * k * m),
+                            m * half_over_dt);
+        const Stick<T> stick = stick_friction(xi + step * slip_rate, at.normal, k, c, slip_rate,
+                                              normal.pressure);
+        t = select_lanes(touching, stick.force);
+        const auto slips = stick.slips && touching;
+        xi = {select(slips, stick.slipped.x, stick.xi.x), select(slips, stick.slipped.y, stick.xi.y),
+              select(slips, stick.slipped.z, stick.xi.z)};
         store(stick_, n, select_lanes(touching, xi));
       } else {  // [F-3]
+        const Vec3<T> slip_rate = slip(v_half, tool_v, at.normal);
+        using std::sqrt;
         const T speed = sqrt(dot(slip_rate, slip_rate));
-        const T c = minimum(mu * pressure / maximum(speed, slip), m * half_over_dt);
+        const T c = minimum(mu * normal.pressure / maximum(speed, slip_speed), m * half_over_dt);
         t = select_lanes(touching, (zero - c) * slip_rate);
       }
 
-      const Vec3<T> damping = viscous * at.normal;
-      const Vec3<T> force = pressure * at.normal + t;
+      const Vec3<T> damping = normal.viscous * at.normal;
+      const Vec3<T> force = normal.pressure * at.normal + t;
       store(state.f, n, load<T>(state.f, n) + force);
       store(friction_, n, t);
       store(damping_, n, damping);
-      pressure.store(normal_.data() + n);
+      normal.pressure.store(normal_.data() + n);
       sum.x += static_cast<double>(lane_sum(force.x));
       sum.y += static_cast<double>(lane_sum(force.y));
       sum.z += static_cast<double>(lane_sum(force.z));
-      stored_ += 0.5 * static_cast<double>(lane_sum(elastic * penetration));
+      stored_ += static_cast<double>(lane_sum(normal.energy));
     }
     this->force_ = sum;
     started_ = true;
@@ -299,9 +325,158 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
            std::sqrt(penalty() / areal_mass);
   }
 
+  void reset_culling() override { std::fill(safe_until_.begin(), safe_until_.end(), 0.0); }
+
+  [[nodiscard]] bool is_rate_form() const override {
+    return parameters_.friction == 0 || parameters_.friction_model == Friction::smooth;
+  }
+
+  void add_tangent(const NodalState<R>& state, int tool_row, TangentEntries& tangent) const override {
+    using D = Dual<R, 6>;  // position and velocity of the node against the tool
+    for (int n = 0; n < state.node_count; ++n) {
+      Vec3<D> p, v;
+      const Vec3<R> x = state.x.get(n), rate = state.v.get(n);
+      p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z - R(this->z_), 2)};
+      v = {D::variable(rate.x, 3), D::variable(rate.y, 4),
+           D::variable(rate.z - R(this->v_plus_), 5)};
+      const SurfaceGap<D> at = shape_.gap(p);
+      if (!(at.gap < D(R(0)))) continue;
+      const D k(R(parameters_.penalty) * state.area[n]), m(state.mass[n]);
+      const Normal<D> normal = normal_force(-at.gap, k, m, -dot(v, at.normal), true);
+      const Vec3<D> force = normal.pressure * at.normal +
+                            smooth_friction(slip(v, D(R(0)), at.normal), normal.pressure);
+      const D component[3] = {force.x, force.y, force.z};
+      Eigen::Matrix3d K, C;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          K(i, j) = -static_cast<double>(component[i].d[j]);
+          C(i, j) = -static_cast<double>(component[i].d[3 + j]);
+        }
+      add_blocks(tangent.stiffness, n, tool_row, K);
+      if (tangent.with_damping) add_blocks(tangent.damping, n, tool_row, C);
+    }
+  }
+
+  void come_to_rest(const NodalState<R>& state) override {
+    rest_ = state.x;
+    rest_z_ = this->z_;
+    if (parameters_.friction_model != Friction::elastic_stick)
+      std::fill(stick_.x.begin(), stick_.x.end(), R(0));
+  }
+
+  double add_rest_forces(NodalState<R>& state, int tool_row, TangentEntries* tangent) const override {
+    using D = Dual<R, 3>;
+    double sum = 0;
+    for (int n = 0; n < state.node_count; ++n) {
+      const Vec3<R> x = state.x.get(n), x0 = rest_.get(n), xi0 = stick_.get(n);
+      const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1),
+                      D::variable(x.z - R(this->z_), 2)};
+      const SurfaceGap<D> at = shape_.gap(p);
+      if (!(at.gap < D(R(0)))) continue;
+      const D k(R(parameters_.penalty) * state.area[n]), none(R(0));
+      const Normal<D> normal = normal_force(-at.gap, k, D(state.mass[n]), none, true);
+      Vec3<D> force = normal.pressure * at.normal;
+      if (parameters_.friction_model == Friction::elastic_stick) {
+        const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
+                         D(xi0.z) + p.z - D(x0.z - R(rest_z_))};
+        force = force + stick_friction(xi, at.normal, k, none, Vec3<D>{}, normal.pressure).force;
+      }
+      const Vec3<R> f{force.x.value, force.y.value, force.z.value};
+      state.f.set(n, state.f.get(n) + f);
+      sum += static_cast<double>(f.z);
+      if (!tangent) continue;
+      const D component[3] = {force.x, force.y, force.z};
+      Eigen::Matrix3d K;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) K(i, j) = -static_cast<double>(component[i].d[j]);
+      add_blocks(tangent->stiffness, n, tool_row, K);
+    }
+    return sum;
+  }
+
   [[nodiscard]] const Shape& shape() const { return shape_; }
 
  private:
+  /// Force, damping and energy of the penalty.
+  template <class S>
+  struct Normal {
+    S viscous, pressure, energy;
+  };
+
+  /// [F-1]; with a smoothing depth [F-5]. Damping never pulls: the total stays a pressure.
+  /// @param k penalty stiffness of the node; @param closing its speed into the tool
+  template <class S, class Mask>
+  CROSSBEAM_INLINE Normal<S> normal_force(const S& penetration, const S& k, const S& m,
+                                          const S& closing, const Mask& touching) const {
+    using std::sqrt;
+    const S zero(R(0)), c = S(R(2 * parameters_.damping_ratio)) * sqrt(k * m);
+    if (parameters_.smoothing > 0) {
+      const S e(static_cast<R>(parameters_.smoothing)), one(R(1));
+      const S u = minimum(penetration / e, one), over = penetration - e * u;
+      const S slope = u * u * (S(R(3)) - S(R(2)) * u);
+      const S elastic = k * (e * u * u * u * (one - S(R(0.5)) * u) + over);
+      const S energy = k * (e * e * u * u * u * u * (S(R(0.25)) - S(R(0.1)) * u) +
+                            over * (S(R(0.5)) * e + S(R(0.5)) * over));
+      const S viscous = select(touching, maximum(c * slope * closing, -elastic), zero);
+      return {viscous, elastic + viscous, energy};
+    }
+    const S elastic = k * penetration;
+    const S viscous = select(touching, maximum(c * closing, -elastic), zero);
+    return {viscous, elastic + viscous, S(R(0.5)) * elastic * penetration};
+  }
+
+  /// Velocity of a node against the tool, in the tangent plane.
+  template <class S>
+  CROSSBEAM_INLINE static Vec3<S> slip(Vec3<S> v, const S& tool_v, const Vec3<S>& normal) {
+    v.z = v.z - tool_v;
+    return v - dot(v, normal) * normal;
+  }
+
+  template <class S>
+  struct Stick {
+    Vec3<S> force, xi, slipped;  ///< slipped: the elastic slip that belongs to a force on the cone
+    decltype(std::declval<S>() > std::declval<S>()) slips;
+  };
+
+  /// [F-2]
+  /// @param xi elastic slip so far
+  template <class S>
+  CROSSBEAM_INLINE Stick<S> stick_friction(const Vec3<S>& xi, const Vec3<S>& normal, const S& k,
+                                           const S& c, const Vec3<S>& slip_rate,
+                                           const S& pressure) const {
+    using std::sqrt;
+    const S tiny(std::numeric_limits<R>::min());
+    const S kt = S(static_cast<R>(parameters_.stick_ratio)) * k;
+    Stick<S> out;
+    out.xi = xi - dot(xi, normal) * normal;
+    Vec3<S> t = S(R(-1)) * (kt * out.xi + c * slip_rate);
+    const S squared = dot(t, t);
+    const S size = sqrt(maximum(squared, tiny));  // a derivative of it at zero
+    const S limit = S(static_cast<R>(parameters_.friction)) * pressure;
+    out.slips = size > limit;
+    out.force = select(out.slips, limit / size, S(R(1))) * t;
+    const S inv_kt = S(R(-1)) / maximum(kt, tiny);
+    out.slipped = inv_kt * out.force;
+    return out;
+  }
+
+  /// [F-6]
+  template <class S>
+  CROSSBEAM_INLINE Vec3<S> smooth_friction(const Vec3<S>& slip_rate, const S& pressure) const {
+    using std::sqrt;
+    const S v_s(static_cast<R>(parameters_.slip_speed)), mu(static_cast<R>(parameters_.friction));
+    return (-(mu * pressure) / sqrt(dot(slip_rate, slip_rate) + v_s * v_s)) * slip_rate;
+  }
+
+  static void add_blocks(std::vector<TangentEntries::Entry>& list, int node, int tool_row,
+                         const Eigen::Matrix3d& K) {
+    TangentEntries::add(list, 3 * node, 3 * node, K);
+    if (tool_row < 0) return;
+    TangentEntries::add(list, 3 * node, tool_row, -K.col(2));
+    TangentEntries::add(list, tool_row, 3 * node, -K.row(2));
+    list.push_back({tool_row, tool_row, K(2, 2)});
+  }
+
   [[nodiscard]] double penalty() const {
     return parameters_.penalty * std::max(1.0, parameters_.stick_ratio);
   }
@@ -336,6 +511,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   AlignedArray<R> normal_;   // normal force on the node, pressure positive [kN]
   std::vector<double> safe_until_;
   std::vector<char> active_;
+  NodeVectors<R> rest_;      // positions where statics began
+  double rest_z_ = 0;
   double stored_ = 0;
   bool started_ = false;
 };

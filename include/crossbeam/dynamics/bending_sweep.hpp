@@ -83,6 +83,10 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     for (const auto& group : short_) energy.bending += group.energy(state);
     for (const auto& group : long_) energy.bending += group.energy(state);
   }
+  void add_tangent(const NodalState<R>&, TangentEntries& tangent) const override {
+    for (const auto& group : short_) group.add_tangent(tangent);
+    for (const auto& group : long_) group.add_tangent(tangent);
+  }
   [[nodiscard]] double omega_squared() const override { return omega_squared_; }
 
   /// Curvature stencils in the block; at most two per node.
@@ -236,6 +240,22 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
                          lane_sum(constants_.load(b, Columns) * dot(kappa, kappa)));
       }
       return sum;
+    }
+
+    void add_tangent(TangentEntries& tangent) const {
+      for (int b = 0; b < batches_.size(); ++b)
+        for (int l = 0; l < batches_[b].active; ++l)
+          for (int i = 0; i < used_; ++i)
+            for (int j = 0; j < used_; ++j) {
+              const double k = static_cast<double>(constants_.load(b, Columns)[l]) *
+                               static_cast<double>(constants_.load(b, i)[l]) *
+                               static_cast<double>(constants_.load(b, j)[l]);
+              const Eigen::Vector3d diagonal(
+                  k * static_cast<double>(sign_x_[i]) * static_cast<double>(sign_x_[j]),
+                  k * static_cast<double>(sign_y_[i]) * static_cast<double>(sign_y_[j]), k);
+              TangentEntries::add(tangent.stiffness, 3 * batches_.node(b, i, l), 3 * batches_.node(b, j, l),
+                           Eigen::Matrix3d(diagonal.asDiagonal()));
+            }
     }
 
    private:

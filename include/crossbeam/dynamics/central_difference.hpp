@@ -3,9 +3,8 @@
 /// Explicit dynamics: the central-difference (leap-frog) scheme with centred damping, a constant
 /// proven bound of the critical step, and the energy ledger. Theory: docs/theory/dynamics.md.
 
-#include "crossbeam/contact/tool_contact.hpp"
-#include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/dynamics/ledger.hpp"
+#include "crossbeam/dynamics/model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,31 +24,14 @@ class CentralDifference {
   /// @param areal_mass   [kg/mm^2]
   /// @param mass_damping alpha of the force -alpha m v [1/ms]; >= 0
   CentralDifference(NodalState<R> state, double areal_mass, double mass_damping = 0)
-      : state_(std::move(state)),
-        areal_mass_(require_positive("areal_mass", areal_mass, "kg/mm^2")),
-        mass_damping_(require_non_negative("mass_damping", mass_damping, "1/ms")) {}
+      : model_(std::move(state), areal_mass, mass_damping) {}
+  explicit CentralDifference(Model<R> model) : model_(std::move(model)) {}
 
-  void add(std::unique_ptr<ForceBlock<R>> block) { blocks_.push_back(std::move(block)); }
-  void add(std::unique_ptr<ToolContact<R>> tool) { tools_.push_back(std::move(tool)); }
+  void add(std::unique_ptr<ForceBlock<R>> block) { model_.add(std::move(block)); }
+  void add(std::unique_ptr<ToolContact<R>> tool) { model_.add(std::move(tool)); }
 
-  /// Bound of the critical step [ms], tag [D-3]: all stiffnesses together with the fabric's
-  /// viscosity, and the contacts with their own damping by themselves. Constant over a run.
-  /// @throws RunError for a model without stiffness
-  [[nodiscard]] double critical_step() const {
-    double fabric = 0, viscosity = 0, contact = 0, contact_damping = 0, area = 0;
-    for (int n = 0; n < state_.node_count; ++n) area += static_cast<double>(state_.area[n]);
-    for (const auto& b : blocks_) {
-      fabric += b->omega_squared();
-      viscosity += b->damping_rate();
-    }
-    for (const auto& t : tools_) {
-      contact += t->omega_squared(areal_mass_, area);
-      contact_damping += t->damping_rate(areal_mass_, area);
-    }
-    if (!(fabric + contact > 0)) throw RunError("no stiffness in the model: no critical step");
-    const double all = stable_step(fabric + contact, viscosity);
-    return contact > 0 ? std::min(all, stable_step(contact, contact_damping)) : all;
-  }
+  /// Model::critical_step
+  [[nodiscard]] double critical_step() const { return model_.critical_step(); }
 
   /// Starts the scheme from the state's positions and velocities (read as v at t = 0), with the
   /// step dt. Call once, after all blocks and tools were added.
@@ -57,7 +39,8 @@ class CentralDifference {
     dt_ = require_positive("time_step", dt, "ms");
     require_positive("time_step in the run's precision", static_cast<R>(dt), "ms");
     time_ = 0;
-    state_.v_centre = state_.v;
+    model_.state.v_centre = model_.state.v;
+    for (const auto& t : model_.tools) t->reset_culling();
   }
 
   /// One step: forces at t_n, velocities to t_{n+1/2}, positions to t_{n+1}.
@@ -66,20 +49,20 @@ class CentralDifference {
   /// anything is not a number
   void step(EnergyLedger* sample = nullptr) {
     CROSSBEAM_EXPECTS(dt_ > 0);
-    compute_forces();
+    model_.compute_forces(dt_, travel_);
     if (steps_ == 0) begin();
     EnergyLedger ledger;
     if (sample) {
-      for (const auto& b : blocks_) b->add_energy(state_, ledger.internal);
-      for (const auto& t : tools_) ledger.contact += t->stored_energy();
+      for (const auto& b : model_.blocks) b->add_energy(model_.state, ledger.internal);
+      for (const auto& t : model_.tools) ledger.contact += t->stored_energy();
     }
     const double fastest = move();
     double tool_travel = 0;
-    for (std::size_t k = 0; k < tools_.size(); ++k) {
-      const double moved = tools_[k]->advance(time_, dt_);
+    for (std::size_t k = 0; k < model_.tools.size(); ++k) {
+      const double moved = model_.tools[k]->advance(time_, dt_);
       if (!std::isfinite(moved))
         throw RunError(when() + "tool " + std::to_string(k) + " is at z = " +
-                       detail::to_text(tools_[k]->position()) +
+                       detail::to_text(model_.tools[k]->position()) +
                        " mm: its motion z(t) or force F(t) gives no number");
       tool_travel = std::max(tool_travel, moved);
     }
@@ -124,20 +107,21 @@ class CentralDifference {
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double time_step() const { return dt_; }
   [[nodiscard]] long long steps() const { return steps_; }
-  [[nodiscard]] const NodalState<R>& state() const { return state_; }
-  [[nodiscard]] NodalState<R>& state() { return state_; }
-  [[nodiscard]] const std::vector<std::unique_ptr<ForceBlock<R>>>& blocks() const { return blocks_; }
-  [[nodiscard]] const std::vector<std::unique_ptr<ToolContact<R>>>& tools() const { return tools_; }
+  [[nodiscard]] const Model<R>& model() const { return model_; }
+  [[nodiscard]] Model<R>& model() { return model_; }
+  [[nodiscard]] const NodalState<R>& state() const { return model_.state; }
+  [[nodiscard]] NodalState<R>& state() { return model_.state; }
+  [[nodiscard]] const std::vector<std::unique_ptr<ForceBlock<R>>>& blocks() const {
+    return model_.blocks;
+  }
+  [[nodiscard]] const std::vector<std::unique_ptr<ToolContact<R>>>& tools() const {
+    return model_.tools;
+  }
 
  private:
   struct Totals {
     double kinetic = 0, friction = 0, contact_damping = 0, external = 0;
   };
-
-  /// Positive root of dt^2 omega^2 / 4 + dt rate = 1: damping forces take the predicted velocity.
-  static double stable_step(double omega_squared, double rate) {
-    return 2 / (rate + std::sqrt(rate * rate + omega_squared));
-  }
 
   [[nodiscard]] std::string when() const {
     return "time " + detail::to_text(time_) + " ms, step " + std::to_string(steps_) + ": ";
@@ -147,8 +131,8 @@ class CentralDifference {
   [[nodiscard]] int fastest_node() const {
     int fastest = 0;
     double most = -1;
-    for (int n = 0; n < state_.node_count; ++n) {
-      const Vec3<R> v = state_.v.get(n);
+    for (int n = 0; n < model_.state.node_count; ++n) {
+      const Vec3<R> v = model_.state.v.get(n);
       const double speed_squared = static_cast<double>(dot(v, v));
       if (!std::isfinite(speed_squared)) return n;
       if (speed_squared > most) fastest = n;
@@ -157,49 +141,41 @@ class CentralDifference {
     return fastest;
   }
 
-  void compute_forces() {
-    std::fill(state_.f.x.begin(), state_.f.x.end(), R(0));
-    std::fill(state_.f.y.begin(), state_.f.y.end(), R(0));
-    std::fill(state_.f.z.begin(), state_.f.z.end(), R(0));
-    for (const auto& b : blocks_) b->add_forces(state_, dt_);
-    for (const auto& t : tools_) t->add_forces(state_, dt_, travel_);
-  }
-
   /// v_{-1/2} = v_0 - dt/2 a_0 keeps the first step of second order; and the energy at the start.
   void begin() {
     InternalEnergy internal;
-    for (const auto& b : blocks_) b->add_energy(state_, internal);
+    for (const auto& b : model_.blocks) b->add_energy(model_.state, internal);
     initial_ = internal.stored();
-    for (const auto& t : tools_) initial_ += t->stored_energy();
-    const T half(static_cast<R>(-dt_ / 2)), alpha(static_cast<R>(mass_damping_));
-    for (int n = 0; n < state_.node_count; n += lanes) {
-      const Vec3<T> v = constrained(n, load<T>(state_.v, n));
+    for (const auto& t : model_.tools) initial_ += t->stored_energy();
+    const T half(static_cast<R>(-dt_ / 2)), alpha(static_cast<R>(model_.mass_damping));
+    for (int n = 0; n < model_.state.node_count; n += lanes) {
+      const Vec3<T> v = constrained(n, load<T>(model_.state.v, n));
       initial_ += 0.5 * static_cast<double>(
-                            lane_sum(T::load(state_.mass.data() + n) * dot(v, v)));
-      store(state_.v, n, constrained(n, v + half * (acceleration(n) - alpha * v)));
+                            lane_sum(T::load(model_.state.mass.data() + n) * dot(v, v)));
+      store(model_.state.v, n, constrained(n, v + half * (acceleration(n) - alpha * v)));
     }
   }
 
   CROSSBEAM_INLINE Vec3<T> acceleration(int n) const {
-    return T::load(state_.inverse_mass.data() + n) * load<T>(state_.f, n);
+    return T::load(model_.state.inverse_mass.data() + n) * load<T>(model_.state.f, n);
   }
   CROSSBEAM_INLINE Vec3<T> constrained(int n, const Vec3<T>& v) const {
-    const Vec3<T> free = load<T>(state_.free, n);
+    const Vec3<T> free = load<T>(model_.state.free, n);
     return {v.x * free.x, v.y * free.y, v.z * free.z};
   }
 
   /// v_{n+1/2} and x_{n+1}, tag [D-1]; returns the largest speed.
   double move() {
-    const double a = mass_damping_ * dt_ / 2;
+    const double a = model_.mass_damping * dt_ / 2;
     const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
     const T dt(static_cast<R>(dt_)), half(R(0.5));
     T fastest(R(0)), sum(R(0));
-    for (int n = 0; n < state_.node_count; n += lanes) {
-      const Vec3<T> before = load<T>(state_.v, n);
+    for (int n = 0; n < model_.state.node_count; n += lanes) {
+      const Vec3<T> before = load<T>(model_.state.v, n);
       const Vec3<T> v = constrained(n, keep * before + push * acceleration(n));
-      store(state_.v, n, v);
-      store(state_.v_centre, n, half * (before + v));
-      store(state_.x, n, load<T>(state_.x, n) + dt * v);
+      store(model_.state.v, n, v);
+      store(model_.state.v_centre, n, half * (before + v));
+      store(model_.state.x, n, load<T>(model_.state.x, n) + dt * v);
       const T speed_squared = dot(v, v);
       fastest = maximum(fastest, speed_squared);
       sum = sum + speed_squared;  // a NaN or an overflow stays in the sum
@@ -210,16 +186,16 @@ class CentralDifference {
 
   /// Work of the step's forces with the velocities a v_n + b v_{n+1/2} over a time, tag [D-4].
   void book(double a, double b, double weight) {
-    for (const auto& t : tools_) t->book(state_, a, b, weight);
-    if (mass_damping_ > 0) {
+    for (const auto& t : model_.tools) t->book(model_.state, a, b, weight);
+    if (model_.mass_damping > 0) {
       const T ta(static_cast<R>(a)), tb(static_cast<R>(b));
       double sum = 0;
-      for (int n = 0; n < state_.node_count; n += lanes) {
-        const Vec3<T> centre = load<T>(state_.v_centre, n);
-        const Vec3<T> v = ta * centre + tb * load<T>(state_.v, n);
-        sum += static_cast<double>(lane_sum(T::load(state_.mass.data() + n) * dot(centre, v)));
+      for (int n = 0; n < model_.state.node_count; n += lanes) {
+        const Vec3<T> centre = load<T>(model_.state.v_centre, n);
+        const Vec3<T> v = ta * centre + tb * load<T>(model_.state.v, n);
+        sum += static_cast<double>(lane_sum(T::load(model_.state.mass.data() + n) * dot(centre, v)));
       }
-      mass_damping_work_ += mass_damping_ * sum * weight;
+      mass_damping_work_ += model_.mass_damping * sum * weight;
     }
   }
 
@@ -227,13 +203,13 @@ class CentralDifference {
   [[nodiscard]] Totals totals() const {
     Totals out;
     const T two(R(2));
-    for (int n = 0; n < state_.node_count; n += lanes) {
-      const Vec3<T> v = load<T>(state_.v, n);
-      const Vec3<T> before = two * load<T>(state_.v_centre, n) - v;
+    for (int n = 0; n < model_.state.node_count; n += lanes) {
+      const Vec3<T> v = load<T>(model_.state.v, n);
+      const Vec3<T> before = two * load<T>(model_.state.v_centre, n) - v;
       out.kinetic +=
-          0.5 * static_cast<double>(lane_sum(T::load(state_.mass.data() + n) * dot(before, v)));
+          0.5 * static_cast<double>(lane_sum(T::load(model_.state.mass.data() + n) * dot(before, v)));
     }
-    for (const auto& t : tools_) {
+    for (const auto& t : model_.tools) {
       out.kinetic += t->kinetic_energy();
       out.friction += t->work().friction;
       out.contact_damping += t->work().damping;
@@ -242,10 +218,7 @@ class CentralDifference {
     return out;
   }
 
-  NodalState<R> state_;
-  double areal_mass_, mass_damping_;
-  std::vector<std::unique_ptr<ForceBlock<R>>> blocks_;
-  std::vector<std::unique_ptr<ToolContact<R>>> tools_;
+  Model<R> model_;
   double dt_ = 0, time_ = 0, travel_ = 0, speed_limit_ = 1e6;
   double mass_damping_work_ = 0, initial_ = 0;
   long long steps_ = 0;

@@ -4,6 +4,7 @@
 /// what it does not have costs nothing.
 
 #include "crossbeam/mesh/nodal_state.hpp"
+#include "crossbeam/mesh/tangent_entries.hpp"
 
 #include <string>
 #include <vector>
@@ -42,6 +43,12 @@ class ForceBlock {
   [[nodiscard]] virtual double omega_squared() const = 0;
   /// Bound of the largest damping rate c/m of these forces' viscous part [1/ms]. Constant.
   [[nodiscard]] virtual double damping_rate() const { return 0; }
+  /// Adds -df/dx and -df/dv at state.x, state.v, for implicit methods, tag.
+  /// @throws InputError where the forces have no consistent tangent
+  virtual void add_tangent(const NodalState<R>&, TangentEntries&) const {
+    throw InputError("force block", "without a consistent tangent", "",
+                     "one that implements add_tangent");
+  }
   /// State of every element of the block; empty for blocks without elements.
   virtual void sample(const NodalState<R>&, std::vector<ElementSample>&) const {}
   /// Gauss points evaluated in a step.

@@ -37,6 +37,10 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     law.yarn_energy(law.evaluate(b));
   };
 
+  static constexpr bool has_tangent = requires(const Law& law, const FibreStrain<T>& b) {
+    { law.hessian(law.evaluate(b)) } -> std::same_as<StrainHessian<T>>;
+  };
+
   /// A law of one's own need not have a cell; then there is nothing of a cell to sample.
   static constexpr bool has_cell = requires(const Law& law) { law.cell().parameters(); };
 
@@ -114,6 +118,13 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     energy.bulk_viscosity += viscous_work_ - 0.5 * viscous_step_;
   }
 
+  void add_tangent(const NodalState<R>& state, TangentEntries& tangent) const override {
+    if constexpr (has_tangent)
+      assemble(state, tangent);
+    else
+      ForceBlock<R>::add_tangent(state, tangent);
+  }
+
   [[nodiscard]] double omega_squared() const override { return omega_squared_; }
   [[nodiscard]] double damping_rate() const override { return damping_rate_; }
   [[nodiscard]] long long points() const override {
@@ -181,6 +192,119 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
           std::max(s.cell_correction, static_cast<double>(at.cell.last_correction[lane]));
     else
       s.fallback = s.fallback || at.cell.fallback[lane] > R(0);
+  }
+
+  using Block = Eigen::Matrix<double, 3 * K, 3 * K>;
+
+  static Eigen::Vector3d lane_of(const Vec3<T>& v, int lane) {
+    return {static_cast<double>(v.x[lane]), static_cast<double>(v.y[lane]),
+            static_cast<double>(v.z[lane])};
+  }
+
+  /// The element's tangent for its relative vectors D, then for its corners, tag.
+  void assemble(const NodalState<R>& state, TangentEntries& tangent) const {
+    // D_k = sum_a C_ak x_a
+    Eigen::Matrix<double, 3 * K, 3 * corners> map = decltype(map)::Zero();
+    for (int a = 0; a < corners; ++a) {
+      Vec3<double> x[corners], D[K];
+      x[a].x = 1;
+      Element::relative_vectors(x, D);
+      for (int k = 0; k < K; ++k)
+        map.template block<3, 3>(3 * k, 3 * a) = D[k].x * Eigen::Matrix3d::Identity();
+    }
+    for (int b = 0; b < batches_.size(); ++b) {
+      const Batch& batch = batches_[b];
+      const auto active = batches_.active(batch);
+      Vec3<T> D[K], v[corners], rate[K];
+      relative_vectors(state.x, batch, D);
+      for (int a = 0; a < corners; ++a) v[a] = batches_.gather(state.v, batch, a);
+      Element::relative_vectors(v, rate);
+      Block stiffness[lanes], damping[lanes];
+      for (int l = 0; l < batch.active; ++l) {
+        stiffness[l].setZero();
+        damping[l].setZero();
+      }
+      for (int p = 0; p < Element::points; ++p) {
+        const PointLanes<T, M> point = load_point(b, p);
+        const PointKinematics<T, M, K> kinematics(D, point), rates(rate, point);
+        const auto at = law_.evaluate(strain(kinematics, active));
+        const FibreStress<T> m = law_.stress(at);
+        const StrainHessian<T> h = law_.hessian(at);
+        const T mu = viscosity_coefficient(point);
+        for (int l = 0; l < batch.active; ++l)
+          add_point_tangent(point, kinematics, rates, m, h, mu, l, stiffness[l], damping[l]);
+      }
+      if constexpr (Element::has_hourglass) {
+        const T p1 = constants_.load(b, hourglass_at), p2 = constants_.load(b, hourglass_at + 1);
+        const T k = hourglass_stiffness(b);
+        for (int l = 0; l < batch.active; ++l) {
+          const Eigen::Vector3d g(-static_cast<double>(p1[l]), -static_cast<double>(p2[l]), 1);
+          for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+              stiffness[l].template block<3, 3>(3 * i, 3 * j) +=
+                  static_cast<double>(k[l]) * g(i) * g(j) * Eigen::Matrix3d::Identity();
+        }
+      }
+      for (int l = 0; l < batch.active; ++l) {
+        add_corners(tangent.stiffness, b, l, map.transpose() * stiffness[l] * map);
+        if (tangent.with_damping && viscosity_)
+          add_corners(tangent.damping, b, l, map.transpose() * damping[l] * map);
+      }
+    }
+  }
+
+  /// Derivatives of add_point_forces by D_k and its rate, in one lane.
+  void add_point_tangent(const PointLanes<T, M>& point, const PointKinematics<T, M, K>& kinematics,
+                         const PointKinematics<T, M, K>& rates, const FibreStress<T>& m,
+                         const StrainHessian<T>& h, const T& mu, int l, Block& stiffness,
+                         Block& damping) const {
+    const auto real = [l](const T& x) { return static_cast<double>(x[l]); };
+    const Eigen::Vector3d f[2] = {lane_of(kinematics.f1, l), lane_of(kinematics.f2, l)};
+    const Eigen::Vector3d rate[2] = {lane_of(rates.f1, l), lane_of(rates.f2, l)};
+    Eigen::Matrix3d H;
+    H << real(h.h11), real(h.h12), real(h.h13), real(h.h12), real(h.h22), real(h.h23), real(h.h13),
+        real(h.h23), real(h.h33);
+    // Derivatives of (beta11, beta22, beta12) by f1 and f2, then of the point's P1 and P2.
+    Eigen::Matrix<double, 3, 6> B = decltype(B)::Zero();
+    B.template block<1, 3>(0, 0) = f[0].transpose();
+    B.template block<1, 3>(1, 3) = f[1].transpose();
+    B.template block<1, 3>(2, 0) = 0.5 * f[1].transpose();
+    B.template block<1, 3>(2, 3) = 0.5 * f[0].transpose();
+    Eigen::Matrix<double, 6, 6> S = B.transpose() * H * B, C = decltype(C)::Zero();
+    const double stress[2][2] = {{real(m.m11), real(m.m12)}, {real(m.m12), real(m.m22)}};
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        S.template block<3, 3>(3 * i, 3 * j) += stress[i][j] * Eigen::Matrix3d::Identity();
+    if (viscosity_)
+      for (int i = 0; i < 2; ++i) {  // [D-5]: P_i = mu (f.rate) f / (f.f)
+        const double Q = f[i].squaredNorm(), power = f[i].dot(rate[i]), c = real(mu) / Q;
+        C.template block<3, 3>(3 * i, 3 * i) = c * f[i] * f[i].transpose();
+        S.template block<3, 3>(3 * i, 3 * i) +=
+            c * (power * Eigen::Matrix3d::Identity() + f[i] * rate[i].transpose() -
+                 2 * power / Q * f[i] * f[i].transpose());
+      }
+    const double weight = real(point.weight);
+    for (int k = 0; k < M; ++k)
+      for (int n = 0; n < M; ++n) {
+        const double t[2][2] = {
+            {real(point.t1[k]) * real(point.t1[n]), real(point.t1[k]) * real(point.t2[n])},
+            {real(point.t2[k]) * real(point.t1[n]), real(point.t2[k]) * real(point.t2[n])}};
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < 2; ++j) {
+            stiffness.template block<3, 3>(3 * k, 3 * n) +=
+                weight * t[i][j] * S.template block<3, 3>(3 * i, 3 * j);
+            damping.template block<3, 3>(3 * k, 3 * n) +=
+                weight * t[i][j] * C.template block<3, 3>(3 * i, 3 * j);
+          }
+      }
+  }
+
+  void add_corners(std::vector<TangentEntries::Entry>& list, int b, int lane,
+                   const Eigen::Matrix<double, 3 * corners, 3 * corners>& block) const {
+    for (int a = 0; a < corners; ++a)
+      for (int c = 0; c < corners; ++c)
+        TangentEntries::add(list, 3 * batches_.node(b, a, lane), 3 * batches_.node(b, c, lane),
+                     block.template block<3, 3>(3 * a, 3 * c));
   }
 
   template <bool Viscous>

@@ -60,6 +60,12 @@ class IndexBatches {
     return batches_[b].first_tuple + std::min(lane, batches_[b].active - 1);
   }
 
+  /// Node of a column in an active lane.
+  [[nodiscard]] int node(int b, int column, int lane) const {
+    const Batch& batch = batches_[b];
+    return batch.gather_row < 0 ? batch.first[column] + lane : row(batch, column)[lane];
+  }
+
   /// Lanes that hold a tuple.
   [[nodiscard]] CROSSBEAM_INLINE auto active(const Batch& batch) const {
     R number[lanes];

@@ -2,7 +2,7 @@
 /// @file
 /// What every energy cell and every yarn law must satisfy, measured on one of them.
 
-#include "crossbeam/adapters/autodiff.hpp"
+#include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/cell/crossed_beam.hpp"
 #include "crossbeam/verification/battery.hpp"

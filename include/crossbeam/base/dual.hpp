@@ -4,7 +4,6 @@
 /// not know it. A user's own cell or law gets its exact tangent by evaluating it on Dual<double, N>.
 
 #include "crossbeam/base/scalar.hpp"
-#include "crossbeam/kinematics/fibre_frame.hpp"
 
 #include <Eigen/Core>
 
@@ -12,6 +11,9 @@
 #include <cmath>
 
 namespace crossbeam {
+
+template <class T>
+T arcsine(const T& x);  // of kinematics/fibre_frame.hpp
 
 template <class T, int N>
 struct Dual {
