@@ -304,7 +304,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     for (int a = 0; a < corners; ++a)
       for (int c = 0; c < corners; ++c)
         TangentEntries::add(list, 3 * batches_.node(b, a, lane), 3 * batches_.node(b, c, lane),
-                     block.template block<3, 3>(3 * a, 3 * c));
+                            block.template block<3, 3>(3 * a, 3 * c));
   }
 
   template <bool Viscous>

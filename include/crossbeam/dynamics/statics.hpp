@@ -7,6 +7,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
