@@ -40,7 +40,7 @@ struct Options {
 
 /// A sheet of 5 mm elements, stretched by 0.5 % and held along its edges, with a smooth speed out
 /// of its plane: taut, moving, and far from the tiny numbers that slow a processor down.
-template <class T>
+template <class T, crossbeam::CellPrice Price = crossbeam::CellPrice::followed>
 CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options) {
   using R = real_t<T>;
   const double edge = 5, width = edge * sheet.nx, length = edge * sheet.ny, prestretch = 1.005;
@@ -60,8 +60,10 @@ CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options)
     state.v.set(n, {R(0), R(0), R(wave) * state.free.z[static_cast<std::size_t>(n)]});
   }
   CentralDifference<T> integrator(std::move(state), areal_mass);
-  const auto law = membrane(crossbeam::CrossedBeamCell<R>(cell_parameters<R>()),
-                            measured_shear<R>(), SolverControl::fixed(3));
+  const crossbeam::WovenMembrane<crossbeam::CrossedBeamCell<R>, crossbeam::PolynomialShear<R>, Price>
+      law(crossbeam::CrossedBeamCell<R>(cell_parameters<R>()), measured_shear<R>(),
+          crossbeam::FibreAngle<R>::right(), crossbeam::YarnWidth::corrected,
+          SolverControl::fixed(3));
   const crossbeam::MembraneOptions membrane_options{options.hourglass ? hourglass_modulus : 0,
                                                     options.viscosity ? bulk_viscosity : 0};
   const auto add_membrane = [&]<int points>() {

@@ -474,7 +474,7 @@ TEST_CASE("V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's
       state.x.z[n] = -depth;
       state.f.set(n, {0, 0, 0});
       state.v.set(n, v);
-      state.v_centre.set(n, v);
+      state.v_predicted.set(n, v);
     }
     contact.add_forces(state, 1, 0);
     struct Answer {

@@ -42,7 +42,7 @@ NodalState<real_t<T>> state_in(const Mesh<4>& m, const Points& x, const Points& 
   for (int n = 0; n < m.node_count; ++n) {
     state.x.set(n, real(x[n]));
     state.v.set(n, real(v[n]));
-    state.v_centre.set(n, real(v[n]));
+    state.v_predicted.set(n, real(v[n]));
   }
   return state;
 }

@@ -131,7 +131,7 @@ TEST_CASE("V-REF-02 a model in rate form has the forces of the explicit scheme, 
   std::vector<Vector> states;
   for (int k = 0; k < 30; ++k) {
     while (run.time() < sheet.duration * (k + 1) / 30) run.step();
-    run.state().v_centre = run.state().v;
+    run.state().v_predicted = run.state().v;
     FirstOrderSystem(run.model()).read(y.data());
     states.push_back(y);
   }
@@ -144,7 +144,7 @@ TEST_CASE("V-REF-02 a model in rate form has the forces of the explicit scheme, 
       changed += (back - states[at]).cwiseAbs().maxCoeff() > 0;
       // The same forces by hand, without skipping.
       plain.state.x = model.state.x;
-      plain.state.v = plain.state.v_centre = model.state.v;
+      plain.state.v = plain.state.v_predicted = model.state.v;
       plain.tools[0]->place(sheet.travel(t), sheet.speed(t));
       plain.tools[0]->reset_culling();
       plain.compute_forces(1, 0);

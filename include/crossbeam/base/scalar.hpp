@@ -17,6 +17,15 @@
 #define CROSSBEAM_INLINE inline
 #endif
 
+/// In front of a loop over a few components: unrolled, so that arrays of packs stay in registers.
+#if defined(__clang__)
+#define CROSSBEAM_UNROLL _Pragma("unroll")
+#elif defined(__GNUC__)
+#define CROSSBEAM_UNROLL _Pragma("GCC unroll 4")
+#else
+#define CROSSBEAM_UNROLL
+#endif
+
 namespace crossbeam {
 
 /// Specialised by packs and dual numbers.

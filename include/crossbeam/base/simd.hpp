@@ -7,7 +7,6 @@
 #include "crossbeam/base/scalar.hpp"
 
 #include <cstdint>
-#include <cstring>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -33,6 +32,9 @@ struct MaskInteger<8> {
 template <class S, int N>
 struct VectorOf {
   typedef S type __attribute__((vector_size(N * sizeof(S))));
+  // In memory: at any address of an S. (A copy by memcpy is cut into 128-bit pieces by g++ 12, which
+  // a load of the whole then has to wait for.)
+  typedef S unaligned __attribute__((vector_size(N * sizeof(S)), aligned(alignof(S)), may_alias));
 };
 
 }  // namespace detail
@@ -75,14 +77,14 @@ struct Pack {
   /// Broadcast.
   template <class A>
     requires std::is_arithmetic_v<A>
-  CROSSBEAM_INLINE Pack(A s) : v(Vector{} + static_cast<S>(s)) {}
+  CROSSBEAM_INLINE Pack(A s) : v(static_cast<S>(s) - Vector{}) {}  // x - 0 is x, -0 too: no addition
 
   CROSSBEAM_INLINE static Pack load(const S* from) {
-    Pack p;
-    std::memcpy(&p.v, from, sizeof(Vector));
-    return p;
+    return Vector(*reinterpret_cast<const typename detail::VectorOf<S, N>::unaligned*>(from));
   }
-  CROSSBEAM_INLINE void store(S* to) const { std::memcpy(to, &v, sizeof(Vector)); }
+  CROSSBEAM_INLINE void store(S* to) const {
+    *reinterpret_cast<typename detail::VectorOf<S, N>::unaligned*>(to) = v;
+  }
   CROSSBEAM_INLINE S operator[](int lane) const { return v[lane]; }
   CROSSBEAM_INLINE void set(int lane, S value) { v[lane] = value; }
 
@@ -215,6 +217,72 @@ struct ScalarTraits<Pack<S, N>> {
   static constexpr int lanes = N;
   static constexpr int derivative_order = 0;
 };
+
+/// c[k] of every lane = from(lane)[k], k = 0..2. Reads from(lane)[3] too.
+template <class From, class S, int N>
+CROSSBEAM_INLINE void gather_three(const From& from, Pack<S, N> (&c)[3]) {
+#if defined(__AVX512F__)
+  if constexpr (std::is_same_v<S, double> && N == 8) {
+    const auto pair = [&](int k) {  // lanes k and k + 2
+      return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(from(k))),
+                                _mm256_loadu_pd(from(k + 2)), 1);
+    };
+    const __m512d r0 = pair(0), r1 = pair(1), r2 = pair(4), r3 = pair(5);
+    const __m512d a = _mm512_unpacklo_pd(r0, r1), b = _mm512_unpackhi_pd(r0, r1);
+    const __m512d d = _mm512_unpacklo_pd(r2, r3), e = _mm512_unpackhi_pd(r2, r3);
+    c[0].v = _mm512_shuffle_f64x2(a, d, 0x88);
+    c[1].v = _mm512_shuffle_f64x2(b, e, 0x88);
+    c[2].v = _mm512_shuffle_f64x2(a, d, 0xdd);
+    return;
+  } else if constexpr (std::is_same_v<S, float> && N == 16) {
+    const auto four = [&](int k) {  // lanes k, k + 4, k + 8, k + 12
+      __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(from(k)));
+      r = _mm512_insertf32x4(r, _mm_loadu_ps(from(k + 4)), 1);
+      r = _mm512_insertf32x4(r, _mm_loadu_ps(from(k + 8)), 2);
+      return _mm512_insertf32x4(r, _mm_loadu_ps(from(k + 12)), 3);
+    };
+    const __m512 r0 = four(0), r1 = four(1), r2 = four(2), r3 = four(3);
+    const __m512 a = _mm512_unpacklo_ps(r0, r1), b = _mm512_unpackhi_ps(r0, r1);
+    const __m512 d = _mm512_unpacklo_ps(r2, r3), e = _mm512_unpackhi_ps(r2, r3);
+    c[0].v = _mm512_shuffle_ps(a, d, 0x44);
+    c[1].v = _mm512_shuffle_ps(a, d, 0xee);
+    c[2].v = _mm512_shuffle_ps(b, e, 0x44);
+    return;
+  } else
+#endif
+#if defined(__AVX__)
+      if constexpr (std::is_same_v<S, double> && N == 4) {
+    const __m256d r0 = _mm256_loadu_pd(from(0)), r1 = _mm256_loadu_pd(from(1));
+    const __m256d r2 = _mm256_loadu_pd(from(2)), r3 = _mm256_loadu_pd(from(3));
+    const __m256d a = _mm256_unpacklo_pd(r0, r1), b = _mm256_unpackhi_pd(r0, r1);
+    const __m256d d = _mm256_unpacklo_pd(r2, r3), e = _mm256_unpackhi_pd(r2, r3);
+    c[0].v = _mm256_permute2f128_pd(a, d, 0x20);
+    c[1].v = _mm256_permute2f128_pd(b, e, 0x20);
+    c[2].v = _mm256_permute2f128_pd(a, d, 0x31);
+    return;
+  } else if constexpr (std::is_same_v<S, float> && N == 8) {
+    // Lane k and lane k + 4 share a register.
+    const auto pair = [&](int k) {
+      return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(from(k))),
+                                  _mm_loadu_ps(from(k + 4)), 1);
+    };
+    const __m256 r0 = pair(0), r1 = pair(1), r2 = pair(2), r3 = pair(3);
+    const __m256 a = _mm256_unpacklo_ps(r0, r1), b = _mm256_unpackhi_ps(r0, r1);
+    const __m256 d = _mm256_unpacklo_ps(r2, r3), e = _mm256_unpackhi_ps(r2, r3);
+    c[0].v = _mm256_shuffle_ps(a, d, 0x44);
+    c[1].v = _mm256_shuffle_ps(a, d, 0xee);
+    c[2].v = _mm256_shuffle_ps(b, e, 0x44);
+    return;
+  } else
+#endif
+  {
+    // Through memory: compilers fill a register lane by lane more slowly, floats most of all.
+    S r[3][N];
+    for (int lane = 0; lane < N; ++lane)
+      for (int k = 0; k < 3; ++k) r[k][lane] = from(lane)[k];
+    for (int k = 0; k < 3; ++k) c[k] = Pack<S, N>::load(r[k]);
+  }
+}
 
 namespace detail {
 #if defined(__AVX512F__)

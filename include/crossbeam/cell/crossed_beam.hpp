@@ -41,6 +41,18 @@ struct CellTangent {
   T K11{}, K12{}, K22{};
 };
 
+/// The forces alone.
+template <class T>
+struct YarnForces {
+  T F1, F2;
+};
+
+/// Increments of the two crimp heights that a cell remembers from one time step to the next [mm].
+template <class T>
+struct CrimpHeights {
+  T w1{}, w2{};
+};
+
 /// How far the equilibrium is iterated.
 struct SolverControl {
   int sweeps = 0;  ///< > 0: exactly that many Newton sweeps, no test. 0: until converged.
@@ -56,6 +68,9 @@ struct YarnConstants {
   R L, H, l0;    ///< projected length, crimp height, chord length in the unstressed cell [mm]
   R c0, s0;      ///< cosine and sine of the crimp angle
   R least_start_squared;  ///< least height of a start, squared [mm^2], tag [C-5]
+  R kb_c0, kb_s0;         ///< products that the forces need
+  R kb_cc, kb_ss, kb_sc;  ///< and the tangents
+  R follow_floor;         ///< least tangent of `follow`: a height that lost its spring stays [kN/mm]
 
   YarnConstants() = default;
   YarnConstants(const YarnParameters<R>& yarn, R height, R boundary_factor, Law axial_law)
@@ -71,6 +86,12 @@ struct YarnConstants {
     kb = boundary_factor * yarn.youngs_modulus * yarn.second_moment_of_area / (l0 * l0 * l0);
     const R least = cbrt(R(2) * l0 * l0 * (kb / ka) * c0 * c0 * H) / R(2);
     least_start_squared = least * least;
+    kb_c0 = kb * c0;
+    kb_s0 = kb * s0;
+    kb_cc = kb * c0 * c0;
+    kb_ss = kb * s0 * s0;
+    kb_sc = kb * s0 * c0;
+    follow_floor = R(1e-6) * ka;
   }
 };
 
@@ -87,9 +108,10 @@ struct YarnState {
   CROSSBEAM_INLINE YarnState(const Yarn& y, const T& u, const T& w) {
     using std::sqrt;
     const T Lc = T(y.L) + u, h = T(y.H) + w;
-    const T l = sqrt(Lc * Lc + h * h);
-    const T inv_l = T(1) / l;
-    e = (u * (T(y.L) + Lc) + w * (T(y.H) + h)) / (l + T(y.l0));
+    const T l = sqrt(Lc * Lc + h * h), sum = l + T(y.l0);
+    const T both = T(1) / (l * sum);  // one division for 1/l and 1/(l + l0)
+    const T inv_l = both * sum;
+    e = (u * (T(y.L) + Lc) + w * (T(y.H) + h)) * (both * l);
     t = T(y.c0) * w - T(y.s0) * u;
     c = Lc * inv_l;
     s = h * inv_l;
@@ -104,23 +126,23 @@ struct YarnState {
   }
   template <class Yarn>
   CROSSBEAM_INLINE T horizontal_force(const Yarn& y) const {
-    return N * c - T(y.kb * y.s0) * t;
+    return N * c - T(y.kb_s0) * t;
   }
   template <class Yarn>
   CROSSBEAM_INLINE T vertical_force(const Yarn& y) const {
-    return N * s + T(y.kb * y.c0) * t;
+    return N * s + T(y.kb_c0) * t;
   }
   template <class Yarn>
   CROSSBEAM_INLINE T k_hh(const Yarn& y) const {
-    return k * s * s + N_over_l * c * c + T(y.kb * y.c0 * y.c0);
+    return k * s * s + N_over_l * c * c + T(y.kb_cc);
   }
   template <class Yarn>
   CROSSBEAM_INLINE T k_LL(const Yarn& y) const {
-    return k * c * c + N_over_l * s * s + T(y.kb * y.s0 * y.s0);
+    return k * c * c + N_over_l * s * s + T(y.kb_ss);
   }
   template <class Yarn>
   CROSSBEAM_INLINE T k_Lh(const Yarn& y) const {
-    return (k - N_over_l) * c * s - T(y.kb * y.s0 * y.c0);
+    return (k - N_over_l) * c * s - T(y.kb_sc);
   }
 };
 
@@ -153,6 +175,7 @@ class CrossedBeamCell {
     yarn2_ = Yarn(parameters.weft, parameters.contact_length - H1,
                   parameters.bending_boundary_factor, std::move(weft));
     k3_ = parameters.contact_modulus * parameters.contact_area / parameters.contact_length;
+    follow_limit_ = parameters.contact_length / R(8);
     largest_elongation_ = CellRange<R>(parameters).largest_elongation();
     has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
   }
@@ -217,6 +240,33 @@ class CrossedBeamCell {
       if (control.sweeps == 0) check(u1, u2, solution);
       return solution;
     }
+  }
+
+  /// One residual evaluation at given heights: forces linearised to the heights of the equilibrium,
+  /// which replace the given ones, tag [C-14]. Its error is of second order in the correction.
+  /// @param heights those of a nearby strain; at first those of solve()
+  template <class T>
+  CROSSBEAM_INLINE YarnForces<T> follow(const T& u1, const T& u2, CrimpHeights<T>& heights) const
+    requires(ContactKind == Contact::unilateral && ScalarTraits<T>::derivative_order == 0)
+  {
+    const YarnState<T> y1(yarn1_, u1, heights.w1), y2(yarn2_, u2, heights.w2);
+    const T g1 = y1.vertical_force(yarn1_), g2 = y2.vertical_force(yarn2_);
+    const T D1 = maximum(y1.k_hh(yarn1_), T(yarn1_.follow_floor));
+    const T D2 = maximum(y2.k_hh(yarn2_), T(yarn2_.follow_floor));
+    const T D12 = D1 * D2, k3 = T(k3_), closed = D12 + k3 * (D1 + D2);
+    const T both = T(1) / (closed * D12);  // one division for 1/closed and 1/D12
+    const T q = maximum(k3 * ((g1 - heights.w1 * D1) * D2 + (g2 - heights.w2 * D2) * D1) *
+                            (both * D12), T(0));
+    const T r = both * closed, most = T(follow_limit_);
+    const T dw1 = maximum(minimum((q - g1) * (D2 * r), most), -most);
+    const T dw2 = maximum(minimum((q - g2) * (D1 * r), most), -most);
+    heights.w1 = heights.w1 + dw1;
+    heights.w2 = heights.w2 + dw2;
+    YarnForces<T> out{y1.horizontal_force(yarn1_) + y1.k_Lh(yarn1_) * dw1,
+                      y2.horizontal_force(yarn2_) + y2.k_Lh(yarn2_) * dw2};
+    if (!has_bending_) slack_without_bending(u1, u2, heights, out);
+    add_residual(u1, u2, out.F1, out.F2);
+    return out;
   }
 
   /// Stored energy of the cell at a solution, tag [C-3].
@@ -354,12 +404,34 @@ class CrossedBeamCell {
       out.F1 = select(open && spare_height_squared(yarn1_, u1) > T(0), T(0), out.F1);
       out.F2 = select(open && spare_height_squared(yarn2_, u2) > T(0), T(0), out.F2);
     }
-    if (kres() > R(0)) {
-      out.F1 = out.F1 + T(kres()) * minimum(u1, T(0));
-      out.F2 = out.F2 + T(kres()) * minimum(u2, T(0));
-    }
+    add_residual(u1, u2, out.F1, out.F2);
     out.w1 = w1;
     out.w2 = w2;
+  }
+
+  template <class T>
+  CROSSBEAM_INLINE void add_residual(const T& u1, const T& u2, T& F1, T& F2) const {
+    if (kres() > R(0)) {
+      F1 = F1 + T(kres()) * minimum(u1, T(0));
+      F2 = F2 + T(kres()) * minimum(u2, T(0));
+    }
+  }
+
+  /// Without bending the slack region has a closed form and a singular tangent: there the heights
+  /// are those of the start [C-5] and a crimped yarn carries nothing.
+  template <class T>
+  CROSSBEAM_INLINE void slack_without_bending(const T& u1, const T& u2, CrimpHeights<T>& heights,
+                                              YarnForces<T>& out) const {
+    using std::sqrt;
+    const T a1 = spare_height_squared(yarn1_, u1), a2 = spare_height_squared(yarn2_, u2);
+    const T h1 = sqrt(maximum(a1, T(yarn1_.least_start_squared)));
+    const T h2 = sqrt(maximum(a2, T(yarn2_.least_start_squared)));
+    const auto slack = h1 + h2 > T(yarn1_.H + yarn2_.H);
+    const auto idle1 = slack && a1 > T(0), idle2 = slack && a2 > T(0);
+    heights.w1 = select(slack, h1 - T(yarn1_.H), heights.w1);
+    heights.w2 = select(slack, h2 - T(yarn2_.H), heights.w2);
+    out.F1 = select(idle1, T(0), out.F1);
+    out.F2 = select(idle2, T(0), out.F2);
   }
 
   /// Status of a solution that was iterated to convergence.
@@ -382,6 +454,7 @@ class CrossedBeamCell {
   CellParameters<R> parameters_{};
   Yarn yarn1_{}, yarn2_{};
   R k3_{};
+  R follow_limit_{};  ///< largest correction of a height in one `follow` [mm]
   R largest_elongation_{};
   bool has_bending_ = false;
 };

@@ -34,6 +34,22 @@ class HeightSurface {
     return {lift * n_z, sign * upward, lift * T(R(1) / sqrt(R(1) + m * m))};
   }
 
+  template <class T>
+    requires requires(const HeightFunction& h, const T& x) { h.in_flat_part(x, x); }
+  CROSSBEAM_INLINE auto in_flat_part(const Vec3<T>& p) const {
+    return height_.in_flat_part(p.x, p.y);
+  }
+  template <class T>
+    requires requires(const HeightFunction& h, const T& x) { h.in_flat_part(x, x); }
+  CROSSBEAM_INLINE SurfaceGap<T> flat_gap(const Vec3<T>& p) const {
+    using std::sqrt;
+    using R = real_t<T>;
+    const T sign = T(R(sign_)), zero = T(R(0));
+    const T lift = sign * (p.z - T(height_.flat_height()));
+    const R m = R(height_.max_slope());
+    return {lift, {zero, zero, sign}, lift * T(R(1) / sqrt(R(1) + m * m))};
+  }
+
   [[nodiscard]] const HeightFunction& height_function() const { return height_; }
   [[nodiscard]] Side side() const { return sign_ > 0 ? Side::above : Side::below; }
 

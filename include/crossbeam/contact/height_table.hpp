@@ -35,7 +35,8 @@ class HeightTable {
       : x_(axis("x", grid.x0, grid.x1, grid.spacing, grid.mirror_x)),
         y_(axis("y", grid.y0, grid.y1, grid.spacing, grid.mirror_y)),
         stride_(checked_stride(x_, y_, grid.spacing)),
-        coefficients_(stride_ * (static_cast<std::size_t>(y_.cells) + 2)) {
+        // One number more than are used: the last one is loaded as part of four.
+        coefficients_(stride_ * (static_cast<std::size_t>(y_.cells) + 2) + 1) {
     for (int j = 0; j < y_.cells; ++j)
       for (int i = 0; i < x_.cells; ++i)
         at(i + 1, j + 1) =
@@ -44,6 +45,7 @@ class HeightTable {
     for (int j = 1; j <= y_.cells; ++j) solve(&at(0, j), 1, x_.cells, work);
     for (int i = 0; i < x_.cells + 2; ++i) solve(&at(i, 0), stride_, y_.cells, work);
     max_slope_ = require_finite("table.source(x, y): slope", slope_bound(), "-");
+    find_flat_part();
   }
 
   /// Height and gradient. T is R, a Pack of R or a number with derivatives over R.
@@ -53,8 +55,8 @@ class HeightTable {
     const Place<T> a = locate(x_, x), b = locate(y_, y);
     T h = T(R(0)), h_x = T(R(0)), h_y = T(R(0));
     for (int j = 0; j < 3; ++j) {
-      const T c0 = gather<T>(a.cell, b.cell, 0, j), c1 = gather<T>(a.cell, b.cell, 1, j),
-              c2 = gather<T>(a.cell, b.cell, 2, j);
+      T c0, c1, c2;
+      gather(a.cell, b.cell, j, c0, c1, c2);
       const T row = a.weight[0] * c0 + a.weight[1] * c1 + a.weight[2] * c2;
       h = h + b.weight[j] * row;
       h_x = h_x + b.weight[j] * (a.rate[0] * c0 + a.rate[1] * c1 + a.rate[2] * c2);
@@ -62,6 +64,13 @@ class HeightTable {
     }
     return {h, h_x, h_y};
   }
+
+  /// Where the table has nothing but its last height: towards its upper ends along x or y.
+  template <class T>
+  CROSSBEAM_INLINE auto in_flat_part(const T& x, const T& y) const {
+    return (beyond(x_, x) >= T(flat_x_)) || (beyond(y_, y) >= T(flat_y_));
+  }
+  [[nodiscard]] R flat_height() const { return coefficients_[coefficients_.size() - 2]; }
 
   /// Upper bound of the gradient's length over the whole table.
   [[nodiscard]] R max_slope() const { return max_slope_; }
@@ -162,6 +171,29 @@ class HeightTable {
     return sqrt(bound);
   }
 
+  template <class T>
+  CROSSBEAM_INLINE static T beyond(const Axis& axis, const T& x) {
+    const T t = x - T(axis.origin);
+    return axis.mirror ? magnitude(t) : t;
+  }
+
+  /// Equal but for rounding counts as flat: the spline's answer to an edge dies out by 0.17 per cell.
+  void find_flat_part() {
+    R largest(0);
+    for (const R& c : coefficients_) largest = maximum(largest, magnitude(c));
+    const R tolerance = R(8) * epsilon_of<R>() * largest, last = flat_height();
+    const auto differs = [&](int i, int j) { return !(magnitude(at(i, j) - last) <= tolerance); };
+    int columns = 0, rows = 0;  // first coefficient from which on all are the last
+    for (int j = 0; j < y_.cells + 2; ++j)
+      for (int i = 0; i < x_.cells + 2; ++i)
+        if (differs(i, j)) {
+          columns = maximum(columns, i + 1);
+          rows = maximum(rows, j + 1);
+        }
+    flat_x_ = R(columns) * x_.spacing;
+    flat_y_ = R(rows) * y_.spacing;
+  }
+
   /// The larger magnitude; a NaN wins.
   static R larger(R so_far, R step) {
     const R size = magnitude(step);
@@ -209,19 +241,25 @@ class HeightTable {
     return p;
   }
 
+  /// Three neighbours along x of every lane's cell, in row j of its three.
   template <class T>
-  CROSSBEAM_INLINE T gather(const int* cell_x, const int* cell_y, int i, int j) const {
-    const auto coefficient = [&](int lane) {
-      return coefficients_[static_cast<std::size_t>(cell_y[lane] + j) * stride_ +
-                           static_cast<std::size_t>(cell_x[lane] + i)];
+  CROSSBEAM_INLINE void gather(const int* cell_x, const int* cell_y, int j, T& c0, T& c1,
+                               T& c2) const {
+    const auto first = [&](int lane) {
+      return coefficients_.data() + static_cast<std::size_t>(cell_y[lane] + j) * stride_ +
+             static_cast<std::size_t>(cell_x[lane]);
     };
     if constexpr (lanes_v<T> == 1) {
-      return T(coefficient(0));
+      const R* c = first(0);
+      c0 = T(c[0]);
+      c1 = T(c[1]);
+      c2 = T(c[2]);
     } else {
-      // Through memory: g++ and clang fill a register lane by lane more slowly, floats most of all.
-      R r[lanes_v<T>];
-      for (int lane = 0; lane < lanes_v<T>; ++lane) r[lane] = coefficient(lane);
-      return T(passive_t<T>::load(r));
+      passive_t<T> c[3];
+      gather_three(first, c);
+      c0 = T(c[0]);
+      c1 = T(c[1]);
+      c2 = T(c[2]);
     }
   }
 
@@ -229,6 +267,7 @@ class HeightTable {
   std::size_t stride_;
   std::vector<R> coefficients_;
   R max_slope_ = R(0);
+  R flat_x_ = R(0), flat_y_ = R(0);  // distance from the origin beyond which the table is flat
 };
 
 }  // namespace crossbeam

@@ -32,7 +32,8 @@ class StadiumRing {
         rounding_(require_positive("ring.edge_radius + offset",
                                    p.edge_radius + require_finite("ring.offset", offset, "mm"),
                                    "mm")),
-        offset_(offset) {
+        offset_(offset),
+        flat_squared_(square(reach_ * (R(1) + R(8) * epsilon_of<R>()))) {
     require_non_negative("ring.centre_distance", p.centre_distance, "mm");
     require_positive("ring.opening_radius - offset", p.opening_radius - offset, "mm");
     detail::require_square("ring.opening_radius + edge_radius", reach_, "mm");
@@ -66,6 +67,19 @@ class StadiumRing {
     return {gap, {-n_in * outward.x, -n_in * outward.y, n_up}, gap};
   }
 
+  /// Outside the rounded edge, below or above the face: the flat of the ring.
+  template <class T>
+  CROSSBEAM_INLINE auto in_flat_part(const Vec3<T>& p) const {
+    const T beyond = maximum(magnitude(p.y) - T(parameters_.centre_distance), T(R(0)));
+    return (p.x * p.x + beyond * beyond >= T(flat_squared_)) &&
+           (p.z > T(-parameters_.edge_radius));
+  }
+  template <class T>
+  CROSSBEAM_INLINE SurfaceGap<T> flat_gap(const Vec3<T>& p) const {
+    const T zero = T(R(0)), gap = (p.z + T(parameters_.edge_radius)) - T(rounding_);
+    return {gap, {zero, zero, T(R(1))}, gap};
+  }
+
   /// Parallel surface: same centre line of the rounding, edge radius + d, flat at z = d [T-6].
   [[nodiscard]] StadiumRing offset(R d) const { return StadiumRing(parameters_, offset_ + d); }
 
@@ -74,6 +88,7 @@ class StadiumRing {
   R reach_;     ///< distance of the rounding's centre line from the opening's middle line
   R rounding_;  ///< edge radius of the parallel surface
   R offset_;
+  R flat_squared_;  ///< beyond this squared distance from the middle line the ring is flat
 };
 
 }  // namespace crossbeam

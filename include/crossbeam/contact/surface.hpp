@@ -29,6 +29,14 @@ concept Surface = requires(const S& surface, const Vec3<T>& point) {
   { surface.gap(point) } -> std::same_as<SurfaceGap<T>>;
 };
 
+/// A tool of which a part is a plane z = const, where nodes can be asked for by their z alone:
+/// `in_flat_part` says in which lanes, and `flat_gap` answers there what `gap` does, to rounding.
+template <class S, class T>
+concept HasFlatPart = requires(const S& surface, const Vec3<T>& point) {
+  surface.in_flat_part(point);
+  { surface.flat_gap(point) } -> std::same_as<SurfaceGap<T>>;
+};
+
 /// A height z = h(x, y) with its gradient.
 template <class T>
 struct HeightSample {

@@ -28,7 +28,8 @@ struct ContactParameters {
   double stick_ratio = 0.5;     ///< tangential over normal penalty [-]; > 0 (elastic stick)
   double slip_speed = 0.04;     ///< speed of full friction [mm/ms]; > 0 (viscous, smooth)
   double smoothing = 0;         ///< depth over which the penalty sets in [mm]; 0: at once, tag [F-5]
-  bool culling = true;          ///< skip batches of nodes that cannot have reached the tool
+  bool culling = true;          ///< skip packs of nodes that cannot have reached the tool
+  bool region_classes = true;   ///< ask the flat part of a tool for its height alone
 };
 
 inline void validate(const ContactParameters& p, const std::string& prefix = "contact") {
@@ -99,11 +100,45 @@ class ToolContact {
 
   /// Contact forces at t_n: adds them to state.f and keeps them for the bookkeeping.
   /// @param travel upper bound of the distance any node or this tool has moved since the start
-  virtual void add_forces(NodalState<R>& state, double dt, double travel) = 0;
-  /// Books the work of the step's forces with the velocities a v_centre + b v, over a time
-  /// `weight`.
-  virtual void book(const NodalState<R>& state, double a, double b, double weight) = 0;
-  [[nodiscard]] virtual double stored_energy() const = 0;
+  void add_forces(NodalState<R>& state, double dt, double travel) {
+    begin_forces();
+    add_forces(state, dt, travel, 0, state.node_count);
+  }
+  /// Books the work of the step's forces with the velocities a v_n + b v_{n+1/2}, over a time
+  /// `weight`; after the nodes have moved.
+  void book(const NodalState<R>& state, double a, double b, double weight) {
+    book_nodes(state, a, b, 0, state.node_count);
+    book_tool(a, b, weight);
+  }
+
+  /// @name The same for a range of nodes at a time, all of which have to be asked for once
+  /// @{
+  /// Forgets the forces of the last step.
+  virtual void begin_forces() {
+    force_ = {};
+    stored_ = 0;
+  }
+  /// @param first, last multiples of the pack width, or the node count
+  virtual void add_forces(NodalState<R>& state, double dt, double travel, int first, int last) = 0;
+  /// Power of the forces on these nodes, for book_tool.
+  virtual void book_nodes(const NodalState<R>& state, double a, double b, int first, int last) = 0;
+  /// Books the nodes' powers and the work at the tool itself; after `advance`.
+  void book_tool(double a, double b, double weight) {
+    const double v = velocity(a, b);
+    // Against the tool: its velocity is taken off all nodes at once.
+    work_.friction -= (friction_power_ - friction_z_ * v) * weight;
+    work_.damping -= (damping_power_ - damping_z_ * v) * weight;
+    friction_power_ = friction_z_ = damping_power_ = damping_z_ = 0;
+    if (motion_.is_free()) {
+      work_.tool += applied_ * v * weight;
+      work_.damping +=
+          motion_.mass * motion_.damping_rate * (v_minus_ + v_plus_) / 2 * v * weight;
+    } else {
+      work_.tool += force_.z * v * weight;
+    }
+  }
+  /// @}
+  [[nodiscard]] double stored_energy() const { return stored_; }
   /// Contact pressure of every node [kN/mm^2].
   virtual void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const = 0;
   /// Bound of this contact's share in the squared frequency of fabric and tool [1/ms^2], tag [D-3].
@@ -170,27 +205,18 @@ class ToolContact {
  protected:
   /// Velocity predicted for t_n, before `advance`, as that of the nodes, tag [D-2].
   [[nodiscard]] double predicted_velocity() const { return 1.5 * v_plus_ - 0.5 * v_minus_; }
-  /// Tool velocity that goes with the node velocities a v_centre + b v (book).
+  /// Tool velocity that goes with the node velocities a v_n + b v_{n+1/2} (book).
   [[nodiscard]] double velocity(double a, double b) const {
     return a * (v_minus_ + v_plus_) / 2 + b * v_plus_;
   }
-  /// Work at the tool itself.
-  void book_tool(double a, double b, double weight) {
-    const double v = velocity(a, b);
-    if (motion_.is_free()) {
-      work_.tool += applied_ * v * weight;
-      work_.damping +=
-          motion_.mass * motion_.damping_rate * (v_minus_ + v_plus_) / 2 * v * weight;
-    } else {
-      work_.tool += force_.z * v * weight;
-    }
-  }
-
   ToolMotion motion_;
   ContactWork work_;
   double z_ = 0, v_minus_ = 0, v_plus_ = 0, applied_ = 0;
   bool moved_ = false;
   Vec3<double> force_{};
+  double stored_ = 0;
+  /// Powers of the forces booked so far in this step, and their sums along z.
+  double friction_power_ = 0, friction_z_ = 0, damping_power_ = 0, damping_z_ = 0;
 };
 
 /// Contact with a tool of a given shape. T is the pack the sweep runs on.
@@ -217,100 +243,62 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     validate(parameters);
   }
 
-  void add_forces(NodalState<R>& state, double dt, double travel) override {
-    const T kp(static_cast<R>(parameters_.penalty)), mu(static_cast<R>(parameters_.friction));
-    const T step(static_cast<R>(started_ ? dt : 0.0));  // no slip has happened before t = 0
-    const T half_over_dt(static_cast<R>(0.5 / dt));
-    const T slip_speed(static_cast<R>(parameters_.slip_speed));
-    const T tool_z(static_cast<R>(this->z_)), tool_v(static_cast<R>(this->v_plus_));
-    const T tool_v_now(static_cast<R>(this->predicted_velocity()));
-    const bool sticks = parameters_.friction_model == Friction::elastic_stick;
-    const bool smooth = parameters_.friction_model == Friction::smooth;
-    const T zero(R(0));
-    Vec3<double> sum{};
-    stored_ = 0;
-    for (int b = 0; b < batches_; ++b) {
-      if (parameters_.culling && travel < safe_until_[b]) continue;
-      const int n = b * lanes;
-      const T area = T::load(state.area.data() + n);
-      Vec3<T> p = load<T>(state.x, n);
-      p.z = p.z - tool_z;
-      const SurfaceGap<T> at = shape_.gap(p);
-      const auto touching = (at.gap < zero) && (area > zero);
-      if (!any(touching)) {
-        const T clearance = select(area > zero, at.clearance, T(std::numeric_limits<R>::max()));
-        // `travel` grows by what node and tool move together: it must use up the clearance first
-        // [F-4].
-        safe_until_[b] = travel + static_cast<double>(-lane_maximum(-clearance));
-        if (active_[b]) release(n, b);
-        continue;
-      }
-      active_[b] = 1;
-      const T m = T::load(state.mass.data() + n);
-      const Vec3<T> v_half = load<T>(state.v, n);
-      const Vec3<T> v_now = state.predicted_velocity(v_half, load<T>(state.v_centre, n));
-      const T penetration = select(touching, -at.gap, zero);
-      const T k = kp * area;
-      const T closing = -(dot(v_now, at.normal) - tool_v_now * at.normal.z);
-      const Normal<T> normal = normal_force(penetration, k, m, closing, touching);
+  using Base::add_forces;
 
-      Vec3<T> t, xi = load<T>(stick_, n);
-      if (smooth) {
-        t = smooth_friction(slip(v_now, tool_v_now, at.normal), normal.pressure);
-      } else if (sticks) {
-        const Vec3<T> slip_rate = slip(v_half, tool_v, at.normal);
-        using std::sqrt;
-        const T c = minimum(T(R(2 * parameters_.damping_ratio)) *
-                                sqrt(T(static_cast<R>(parameters_.stick_ratio)) * k * m),
-                            m * half_over_dt);
-        const Stick<T> stick = stick_friction(xi + step * slip_rate, at.normal, k, c, slip_rate,
-                                              normal.pressure);
-        t = select_lanes(touching, stick.force);
-        const auto slips = stick.slips && touching;
-        xi = {select(slips, stick.slipped.x, stick.xi.x), select(slips, stick.slipped.y, stick.xi.y),
-              select(slips, stick.slipped.z, stick.xi.z)};
-        store(stick_, n, select_lanes(touching, xi));
-      } else {  // [F-3]
-        const Vec3<T> slip_rate = slip(v_half, tool_v, at.normal);
-        using std::sqrt;
-        const T speed = sqrt(dot(slip_rate, slip_rate));
-        const T c = minimum(mu * normal.pressure / maximum(speed, slip_speed), m * half_over_dt);
-        t = select_lanes(touching, (zero - c) * slip_rate);
-      }
-
-      const Vec3<T> damping = normal.viscous * at.normal;
-      const Vec3<T> force = normal.pressure * at.normal + t;
-      store(state.f, n, load<T>(state.f, n) + force);
-      store(friction_, n, t);
-      store(damping_, n, damping);
-      normal.pressure.store(normal_.data() + n);
-      sum.x += static_cast<double>(lane_sum(force.x));
-      sum.y += static_cast<double>(lane_sum(force.y));
-      sum.z += static_cast<double>(lane_sum(force.z));
-      stored_ += static_cast<double>(lane_sum(normal.energy));
-    }
-    this->force_ = sum;
+  void begin_forces() override {
+    Base::begin_forces();
+    at_start_ = !started_;
     started_ = true;
   }
 
-  void book(const NodalState<R>& state, double a, double b, double weight) override {
-    const T ta(static_cast<R>(a)), tb(static_cast<R>(b));
-    const T tool_v(static_cast<R>(this->velocity(a, b)));
-    double friction = 0, damping = 0;
-    for (int k = 0; k < batches_; ++k) {
-      if (!active_[k]) continue;
-      const int n = k * lanes;
-      Vec3<T> v = ta * load<T>(state.v_centre, n) + tb * load<T>(state.v, n);
-      v.z = v.z - tool_v;
-      friction -= static_cast<double>(lane_sum(dot(load<T>(friction_, n), v)));
-      damping -= static_cast<double>(lane_sum(dot(load<T>(damping_, n), v)));
+  void add_forces(NodalState<R>& state, double dt, double travel, int first, int last) override {
+    Step step;
+    step.slip_time = T(static_cast<R>(at_start_ ? 0.0 : dt));  // no slip has happened before t = 0
+    step.half_over_dt = T(static_cast<R>(0.5 / dt));
+    step.z = T(static_cast<R>(this->z_));
+    step.velocity = T(static_cast<R>(this->v_plus_));
+    step.velocity_now = T(static_cast<R>(this->predicted_velocity()));
+    Sums sums;
+    const T zero(R(0));
+    for (int n = first; n < last; n += lanes) {
+      const int b = n / lanes;
+      if (parameters_.culling && travel < safe_until_[b]) continue;
+      const T area = T::load(state.area.data() + n);
+      Vec3<T> p = load<T>(state.x, n);
+      p.z = p.z - step.z;
+      const auto real = area > zero;
+      if constexpr (HasFlatPart<Shape, T>)
+        if (parameters_.region_classes && all(shape_.in_flat_part(p) || !real)) {
+          touch<true>(state, n, travel, step, area, p, sums);
+          continue;
+        }
+      touch<false>(state, n, travel, step, area, p, sums);
     }
-    this->work_.friction += friction * weight;
-    this->work_.damping += damping * weight;
-    this->book_tool(a, b, weight);
+    this->force_.x += static_cast<double>(lane_sum(sums.force.x));
+    this->force_.y += static_cast<double>(lane_sum(sums.force.y));
+    this->force_.z += static_cast<double>(lane_sum(sums.force.z));
+    this->stored_ += static_cast<double>(lane_sum(sums.energy));
   }
 
-  [[nodiscard]] double stored_energy() const override { return stored_; }
+  void book_nodes(const NodalState<R>& state, double a, double b, int first, int last) override {
+    // v_n = 2 v_{n+1/2} - v_predicted, whichever step the latter is for.
+    const T ta(static_cast<R>(-a)), tb(static_cast<R>(2 * a + b));
+    const T zero(R(0));
+    T friction = zero, friction_z = zero, damping = zero, damping_z = zero;
+    for (int n = first; n < last; n += lanes) {
+      if (!active_[n / lanes]) continue;
+      const Vec3<T> v = ta * load<T>(state.v_predicted, n) + tb * load<T>(state.v, n);
+      const Vec3<T> f = load<T>(friction_, n), d = load<T>(damping_, n);
+      friction = friction + dot(f, v);
+      friction_z = friction_z + f.z;
+      damping = damping + dot(d, v);
+      damping_z = damping_z + d.z;
+    }
+    this->friction_power_ += static_cast<double>(lane_sum(friction));
+    this->friction_z_ += static_cast<double>(lane_sum(friction_z));
+    this->damping_power_ += static_cast<double>(lane_sum(damping));
+    this->damping_z_ += static_cast<double>(lane_sum(damping_z));
+  }
 
   void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const override {
     for (int n = 0; n < state.node_count; ++n)
@@ -342,9 +330,10 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const SurfaceGap<D> at = shape_.gap(p);
       if (!(at.gap < D(R(0)))) continue;
       const D k(R(parameters_.penalty) * state.area[n]), m(state.mass[n]);
-      const Normal<D> normal = normal_force(-at.gap, k, m, -dot(v, at.normal), true);
+      using std::sqrt;
+      const Normal<D> normal = normal_force(-at.gap, k, sqrt(k * m), -dot(v, at.normal), true);
       const Vec3<D> force = normal.pressure * at.normal +
-                            smooth_friction(slip(v, D(R(0)), at.normal), normal.pressure);
+                            smooth_friction(slip<false>(v, D(R(0)), at.normal), normal.pressure);
       const D component[3] = {force.x, force.y, force.z};
       Eigen::Matrix3d K, C;
       for (int i = 0; i < 3; ++i)
@@ -374,12 +363,12 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const SurfaceGap<D> at = shape_.gap(p);
       if (!(at.gap < D(R(0)))) continue;
       const D k(R(parameters_.penalty) * state.area[n]), none(R(0));
-      const Normal<D> normal = normal_force(-at.gap, k, D(state.mass[n]), none, true);
+      const Normal<D> normal = normal_force(-at.gap, k, none, none, true);
       Vec3<D> force = normal.pressure * at.normal;
       if (parameters_.friction_model == Friction::elastic_stick) {
         const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
                          D(xi0.z) + p.z - D(x0.z - R(rest_z_))};
-        force = force + stick_friction(xi, at.normal, k, none, Vec3<D>{}, normal.pressure).force;
+        force = force + stick_friction<false>(xi, at.normal, k, none, Vec3<D>{}, normal.pressure).force;
       }
       const Vec3<R> f{force.x.value, force.y.value, force.z.value};
       state.f.set(n, state.f.get(n) + f);
@@ -397,6 +386,80 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   [[nodiscard]] const Shape& shape() const { return shape_; }
 
  private:
+  /// What all nodes of a step share, in every lane.
+  struct Step {
+    T slip_time, half_over_dt;
+    T z, velocity, velocity_now;  ///< of the tool
+  };
+  struct Sums {
+    Vec3<T> force{T(R(0)), T(R(0)), T(R(0))};
+    T energy{R(0)};
+  };
+
+  /// One pack of nodes, against the flat part of the tool or against all of it.
+  template <bool Flat>
+  CROSSBEAM_INLINE void touch(NodalState<R>& state, int n, double travel, const Step& step,
+                              const T& area, const Vec3<T>& p, Sums& sums) {
+    const int b = n / lanes;
+    const T zero(R(0));
+    const auto real = area > zero;
+    SurfaceGap<T> at;
+    if constexpr (Flat)
+      at = shape_.flat_gap(p);
+    else
+      at = shape_.gap(p);
+    const auto touching = (at.gap < zero) && real;
+    if (!any(touching)) {
+      const T clearance = select(real, at.clearance, T(std::numeric_limits<R>::max()));
+      // `travel` grows by what node and tool move together: it must use up the clearance first
+      // [F-4].
+      safe_until_[b] = travel + static_cast<double>(-lane_maximum(-clearance));
+      if (active_[b]) release(n, b);
+      return;
+    }
+    active_[b] = 1;
+    const T m = T::load(state.mass.data() + n);
+    const Vec3<T> v_half = load<T>(state.v, n), v_now = load<T>(state.v_predicted, n);
+    const T penetration = select(touching, -at.gap, zero);
+    const T k = T(static_cast<R>(parameters_.penalty)) * area;
+    const T closing = -(along_normal<Flat>(v_now, at.normal) - step.velocity_now * at.normal.z);
+    using std::sqrt;
+    const T root = sqrt(k * m);
+    const Normal<T> normal = normal_force(penetration, k, root, closing, touching);
+
+    Vec3<T> t, xi = load<T>(stick_, n);
+    if (parameters_.friction_model == Friction::smooth) {
+      t = smooth_friction(slip<Flat>(v_now, step.velocity_now, at.normal), normal.pressure);
+    } else if (parameters_.friction_model == Friction::elastic_stick) {
+      const Vec3<T> slip_rate = slip<Flat>(v_half, step.velocity, at.normal);
+      const T c = minimum(T(static_cast<R>(2 * parameters_.damping_ratio *
+                                           std::sqrt(parameters_.stick_ratio))) * root,
+                          m * step.half_over_dt);
+      const Stick<T> stick = stick_friction<Flat>(xi + step.slip_time * slip_rate, at.normal, k, c,
+                                                  slip_rate, normal.pressure);
+      t = select_lanes(touching, stick.force);
+      const auto slips = stick.slips && touching;
+      xi = {select(slips, stick.slipped.x, stick.xi.x), select(slips, stick.slipped.y, stick.xi.y),
+            select(slips, stick.slipped.z, stick.xi.z)};
+      store(stick_, n, select_lanes(touching, xi));
+    } else {  // [F-3]
+      const Vec3<T> slip_rate = slip<Flat>(v_half, step.velocity, at.normal);
+      const T speed = sqrt(dot(slip_rate, slip_rate));
+      const T mu(static_cast<R>(parameters_.friction));
+      const T slip_speed(static_cast<R>(parameters_.slip_speed));
+      const T c = minimum(mu * normal.pressure / maximum(speed, slip_speed), m * step.half_over_dt);
+      t = select_lanes(touching, (zero - c) * slip_rate);
+    }
+
+    const Vec3<T> force = normal.pressure * at.normal + t;
+    store(state.f, n, load<T>(state.f, n) + force);
+    store(friction_, n, t);
+    store(damping_, n, normal.viscous * at.normal);
+    normal.pressure.store(normal_.data() + n);
+    sums.force = sums.force + force;
+    sums.energy = sums.energy + normal.energy;
+  }
+
   /// Force, damping and energy of the penalty.
   template <class S>
   struct Normal {
@@ -404,12 +467,12 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   };
 
   /// [F-1]; with a smoothing depth [F-5]. Damping never pulls: the total stays a pressure.
-  /// @param k penalty stiffness of the node; @param closing its speed into the tool
+  /// @param k penalty stiffness of the node; @param root sqrt(k m) with its mass
+  /// @param closing its speed into the tool
   template <class S, class Mask>
-  CROSSBEAM_INLINE Normal<S> normal_force(const S& penetration, const S& k, const S& m,
+  CROSSBEAM_INLINE Normal<S> normal_force(const S& penetration, const S& k, const S& root,
                                           const S& closing, const Mask& touching) const {
-    using std::sqrt;
-    const S zero(R(0)), c = S(R(2 * parameters_.damping_ratio)) * sqrt(k * m);
+    const S zero(R(0)), c = S(R(2 * parameters_.damping_ratio)) * root;
     if (parameters_.smoothing > 0) {
       const S e(static_cast<R>(parameters_.smoothing)), one(R(1));
       const S u = minimum(penetration / e, one), over = penetration - e * u;
@@ -425,11 +488,28 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     return {viscous, elastic + viscous, S(R(0.5)) * elastic * penetration};
   }
 
+  /// Component along the normal, which in a flat part is +-z.
+  template <bool Flat, class S>
+  CROSSBEAM_INLINE static S along_normal(const Vec3<S>& v, const Vec3<S>& normal) {
+    if constexpr (Flat)
+      return v.z * normal.z;
+    else
+      return dot(v, normal);
+  }
+  /// The part of v in the tangent plane.
+  template <bool Flat, class S>
+  CROSSBEAM_INLINE static Vec3<S> tangential(const Vec3<S>& v, const Vec3<S>& normal) {
+    if constexpr (Flat)
+      return {v.x, v.y, S(R(0))};
+    else
+      return v - dot(v, normal) * normal;
+  }
+
   /// Velocity of a node against the tool, in the tangent plane.
-  template <class S>
+  template <bool Flat, class S>
   CROSSBEAM_INLINE static Vec3<S> slip(Vec3<S> v, const S& tool_v, const Vec3<S>& normal) {
     v.z = v.z - tool_v;
-    return v - dot(v, normal) * normal;
+    return tangential<Flat>(v, normal);
   }
 
   template <class S>
@@ -440,7 +520,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
 
   /// [F-2]
   /// @param xi elastic slip so far
-  template <class S>
+  template <bool Flat, class S>
   CROSSBEAM_INLINE Stick<S> stick_friction(const Vec3<S>& xi, const Vec3<S>& normal, const S& k,
                                            const S& c, const Vec3<S>& slip_rate,
                                            const S& pressure) const {
@@ -448,7 +528,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     const S tiny(std::numeric_limits<R>::min());
     const S kt = S(static_cast<R>(parameters_.stick_ratio)) * k;
     Stick<S> out;
-    out.xi = xi - dot(xi, normal) * normal;
+    out.xi = tangential<Flat>(xi, normal);
     Vec3<S> t = S(R(-1)) * (kt * out.xi + c * slip_rate);
     const S squared = dot(t, t);
     const S size = sqrt(maximum(squared, tiny));  // a derivative of it at zero
@@ -513,8 +593,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   std::vector<char> active_;
   NodeVectors<R> rest_;      // positions where statics began
   double rest_z_ = 0;
-  double stored_ = 0;
-  bool started_ = false;
+  bool started_ = false, at_start_ = true;
 };
 
 }  // namespace crossbeam

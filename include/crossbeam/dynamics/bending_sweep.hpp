@@ -75,9 +75,23 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
   }
 
-  void add_forces(NodalState<R>& state, double) override {
-    for (const auto& group : short_) group.add_forces(state);
-    for (const auto& group : long_) group.add_forces(state);
+  void add_forces(NodalState<R>& state, double dt) override {
+    const int stages = short_.empty() ? (long_.empty() ? 0 : long_[0].stages()) : short_[0].stages();
+    for (int stage = 0; stage < stages; ++stage) add_forces(state, dt, stage);
+  }
+  [[nodiscard]] int bandwidth() const override {
+    int widest = 0;
+    for (const auto& group : short_) widest = std::max(widest, group.bandwidth());
+    for (const auto& group : long_) widest = std::max(widest, group.bandwidth());
+    return widest;
+  }
+  void arrange(const std::vector<int>& level_start) override {
+    for (auto& group : short_) group.arrange(level_start);
+    for (auto& group : long_) group.arrange(level_start);
+  }
+  void add_forces(NodalState<R>& state, double, int stage) override {
+    for (const auto& group : short_) group.add_forces(state, stage);
+    for (const auto& group : long_) group.add_forces(state, stage);
   }
   void add_energy(const NodalState<R>& state, InternalEnergy& energy) const override {
     for (const auto& group : short_) energy.bending += group.energy(state);
@@ -223,21 +237,37 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
           for (int k = 0; k < used_; ++k) constants_.at(b, k, l) = R(s.weight[k]);
           constants_.at(b, Columns, l) = R(s.stiffness);
         }
+      constants_.collapse_if_uniform(
+          [this](int c) {
+            R largest = c == Columns ? std::abs(constants_.at(0, c, 0)) : R(0);
+            for (int k = 0; c < Columns && k < used_; ++k)
+              largest = std::max(largest, std::abs(constants_.at(0, k, 0)));
+            return largest;
+          },
+          [this](int b) { return batches_[b].active; });
     }
 
-    void add_forces(NodalState<R>& state) const {
+    [[nodiscard]] int stages() const { return batches_.stages(); }
+    [[nodiscard]] int bandwidth() const { return batches_.bandwidth(); }
+    void arrange(const std::vector<int>& level_start) { batches_.arrange(level_start); }
+
+    void add_forces(NodalState<R>& state, int stage) const {
+      const int first = batches_.first_run(stage), last = batches_.first_run(stage + 1);
+      if (first == last) return;
       if (mirrored_)
-        sweep<true>(state);
+        sweep<true>(state, first, last);
       else
-        sweep<false>(state);
+        sweep<false>(state, first, last);
     }
 
     [[nodiscard]] double energy(const NodalState<R>& state) const {
       double sum = 0;
+      const T zero(R(0));
       for (int b = 0; b < batches_.size(); ++b) {
         const Vec3<T> kappa = curvature<true>(state, b);
+        const T energy = constants_.load(b, Columns) * dot(kappa, kappa);
         sum += 0.5 * static_cast<double>(
-                         lane_sum(constants_.load(b, Columns) * dot(kappa, kappa)));
+                         lane_sum(select(batches_.active(batches_[b]), energy, zero)));
       }
       return sum;
     }
@@ -278,13 +308,29 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
 
     template <bool Mirrored>
-    void sweep(NodalState<R>& state) const {
-      for (int b = 0; b < batches_.size(); ++b) {
-        const Vec3<T> moment =
-            constants_.load(b, Columns) * curvature<Mirrored>(state, b);
-        for (int k = 0; k < used_; ++k)
-          batches_.subtract(state.f, batches_[b], k,
-                            constants_.load(b, k) * signed_copy<Mirrored>(moment, k));
+    void sweep(NodalState<R>& state, int first_run, int last_run) const {
+      RunForces<Columns, T> forces;
+      const T zero(R(0));
+      for (int r = first_run; r < last_run; ++r) {
+        const auto& run = batches_.run(r);
+        for (int i = 0; i < run.batches; ++i) {
+          const int b = run.first_batch + i;
+          Vec3<T> moment = constants_.load(b, Columns) * curvature<Mirrored>(state, b);
+          if (batches_[b].active < lanes) {
+            const auto active = batches_.active(batches_[b]);
+            moment = {select(active, moment.x, zero), select(active, moment.y, zero),
+                      select(active, moment.z, zero)};
+          }
+          for (int k = 0; k < used_; ++k) {
+            const Vec3<T> f = constants_.load(b, k) * signed_copy<Mirrored>(moment, k);
+            if (run.contiguous)
+              forces.put(k, i * lanes, f);
+            else
+              batches_.subtract(state.f, batches_[b], k, f);
+          }
+        }
+        if (run.contiguous)
+          forces.subtract_from(state.f, run, batches_[run.first_batch].first);
       }
     }
 

@@ -39,35 +39,43 @@ class CentralDifference {
     dt_ = require_positive("time_step", dt, "ms");
     require_positive("time_step in the run's precision", static_cast<R>(dt), "ms");
     time_ = 0;
-    model_.state.v_centre = model_.state.v;
+    model_.state.v_predicted = model_.state.v;
     for (const auto& t : model_.tools) t->reset_culling();
+    level_start_ = model_.arrange(least_level);
+    travel_.assign(level_start_.size() - 1, 0.0);
+    tool_travel_ = 0;
   }
 
-  /// One step: forces at t_n, velocities to t_{n+1/2}, positions to t_{n+1}.
+  /// One step: forces at t_n, velocities to t_{n+1/2}, positions to t_{n+1}. Level by level, so that
+  /// what one part of the step has written is still in the cache for the next, tag [S-3].
   /// @param sample ledger to fill with the energies at t_n, or nullptr
   /// @throws RunError naming node, tool or ledger when a node moves faster than `speed_limit`, or
   /// anything is not a number
   void step(EnergyLedger* sample = nullptr) {
     CROSSBEAM_EXPECTS(dt_ > 0);
-    model_.compute_forces(dt_, travel_);
-    if (steps_ == 0) begin();
+    for (const auto& b : model_.blocks) b->begin_step();
+    for (const auto& t : model_.tools) t->begin_forces();
+    // Energies are those of x_n: then no node moves before all forces are known.
+    const bool at_once = sample || steps_ == 0;
+    double fastest = 0;
+    for (int level = 0; level < levels(); ++level) {
+      add_internal_forces(level);
+      if (!at_once && level > 0) fastest = faster(fastest, finish(level - 1));
+    }
     EnergyLedger ledger;
-    if (sample) {
-      for (const auto& b : model_.blocks) b->add_energy(model_.state, ledger.internal);
-      for (const auto& t : model_.tools) ledger.contact += t->stored_energy();
+    if (at_once) {
+      for (int level = 0; level < levels(); ++level) add_contact_forces(level);
+      if (steps_ == 0) begin();
+      if (sample) {
+        for (const auto& b : model_.blocks) b->add_energy(model_.state, ledger.internal);
+        for (const auto& t : model_.tools) ledger.contact += t->stored_energy();
+      }
+      for (int level = 0; level < levels(); ++level) fastest = faster(fastest, move(level));
+    } else {
+      fastest = faster(fastest, finish(levels() - 1));
     }
-    const double fastest = move();
-    double tool_travel = 0;
-    for (std::size_t k = 0; k < model_.tools.size(); ++k) {
-      const double moved = model_.tools[k]->advance(time_, dt_);
-      if (!std::isfinite(moved))
-        throw RunError(when() + "tool " + std::to_string(k) + " is at z = " +
-                       detail::to_text(model_.tools[k]->position()) +
-                       " mm: its motion z(t) or force F(t) gives no number");
-      tool_travel = std::max(tool_travel, moved);
-    }
-    travel_ += fastest * dt_ + tool_travel;
-    if (sample || steps_ == 0) {
+    advance_tools();
+    if (at_once) {
       // First half of the step's work, the energies at t_n, then the second half. The first half of
       // the first step would lie before the start.
       if (steps_ > 0) book(2, -1, dt_ / 2);
@@ -84,7 +92,8 @@ class CentralDifference {
       }
       book(0, 1, dt_ / 2);
     } else {
-      book(1, 0, dt_);
+      for (const auto& t : model_.tools) t->book_tool(1, 0, dt_);
+      book_mass_damping(dt_);
     }
     ++steps_;
     time_ = static_cast<double>(steps_) * dt_;
@@ -119,6 +128,46 @@ class CentralDifference {
   }
 
  private:
+  static constexpr int least_level = 256;
+
+  [[nodiscard]] int levels() const { return static_cast<int>(travel_.size()); }
+
+  void add_internal_forces(int level) {
+    model_.clear_forces(level_start_[level], level_start_[level + 1]);
+    if (level == 0) model_.clear_forces(level_start_.back(), level_start_.back() + array_padding);
+    for (const auto& b : model_.blocks) b->add_forces(model_.state, dt_, level);
+  }
+  void add_contact_forces(int level) {
+    for (const auto& t : model_.tools)
+      t->add_forces(model_.state, dt_, travel_[level] + tool_travel_, level_start_[level],
+                    level_start_[level + 1]);
+  }
+  /// The rest of the step for nodes that have all their internal forces; returns the largest speed.
+  double finish(int level) {
+    add_contact_forces(level);
+    const double fastest = move(level);
+    const int first = level_start_[level], last = level_start_[level + 1];
+    for (const auto& t : model_.tools) t->book_nodes(model_.state, 1, 0, first, last);
+    if (model_.mass_damping > 0) mass_damping_power_ += mass_damping_power(1, 0, first, last);
+    return fastest;
+  }
+
+  /// The larger one; what is no number stays.
+  static double faster(double a, double b) { return a >= b ? a : (b >= a ? b : a + b); }
+
+  void advance_tools() {
+    double furthest = 0;
+    for (std::size_t k = 0; k < model_.tools.size(); ++k) {
+      const double moved = model_.tools[k]->advance(time_, dt_);
+      if (!std::isfinite(moved))
+        throw RunError(when() + "tool " + std::to_string(k) + " is at z = " +
+                       detail::to_text(model_.tools[k]->position()) +
+                       " mm: its motion z(t) or force F(t) gives no number");
+      furthest = std::max(furthest, moved);
+    }
+    tool_travel_ += furthest;
+  }
+
   struct Totals {
     double kinetic = 0, friction = 0, contact_damping = 0, external = 0;
   };
@@ -164,39 +213,53 @@ class CentralDifference {
     return {v.x * free.x, v.y * free.y, v.z * free.z};
   }
 
-  /// v_{n+1/2} and x_{n+1}, tag [D-1]; returns the largest speed.
-  double move() {
+  /// v_{n+1/2} and x_{n+1} of a level, tag [D-1]; returns the largest speed.
+  double move(int level) {
     const double a = model_.mass_damping * dt_ / 2;
     const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
-    const T dt(static_cast<R>(dt_)), half(R(0.5));
+    const T dt(static_cast<R>(dt_)), half(R(0.5)), three_halves(R(1.5));
     T fastest(R(0)), sum(R(0));
-    for (int n = 0; n < model_.state.node_count; n += lanes) {
+    for (int n = level_start_[level]; n < level_start_[level + 1]; n += lanes) {
       const Vec3<T> before = load<T>(model_.state.v, n);
       const Vec3<T> v = constrained(n, keep * before + push * acceleration(n));
       store(model_.state.v, n, v);
-      store(model_.state.v_centre, n, half * (before + v));
+      store(model_.state.v_predicted, n, three_halves * v - half * before);
       store(model_.state.x, n, load<T>(model_.state.x, n) + dt * v);
       const T speed_squared = dot(v, v);
       fastest = maximum(fastest, speed_squared);
       sum = sum + speed_squared;  // a NaN or an overflow stays in the sum
     }
     const double total = static_cast<double>(lane_sum(sum));
-    return std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
+    const double speed =
+        std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
+    travel_[level] += speed * dt_;
+    return speed;
   }
 
   /// Work of the step's forces with the velocities a v_n + b v_{n+1/2} over a time, tag [D-4].
   void book(double a, double b, double weight) {
     for (const auto& t : model_.tools) t->book(model_.state, a, b, weight);
-    if (model_.mass_damping > 0) {
-      const T ta(static_cast<R>(a)), tb(static_cast<R>(b));
-      double sum = 0;
-      for (int n = 0; n < model_.state.node_count; n += lanes) {
-        const Vec3<T> centre = load<T>(model_.state.v_centre, n);
-        const Vec3<T> v = ta * centre + tb * load<T>(model_.state.v, n);
-        sum += static_cast<double>(lane_sum(T::load(model_.state.mass.data() + n) * dot(centre, v)));
-      }
-      mass_damping_work_ += model_.mass_damping * sum * weight;
+    if (model_.mass_damping > 0)
+      mass_damping_power_ += mass_damping_power(a, b, 0, model_.state.node_count);
+    book_mass_damping(weight);
+  }
+  [[nodiscard]] double mass_damping_power(double a, double b, int first, int last) const {
+    const T ta(static_cast<R>(a)), tb(static_cast<R>(b));
+    T sum(R(0));
+    for (int n = first; n < last; n += lanes) {
+      const Vec3<T> half = load<T>(model_.state.v, n), centre = centre_velocity(n);
+      sum = sum + T::load(model_.state.mass.data() + n) * dot(centre, ta * centre + tb * half);
     }
+    return static_cast<double>(lane_sum(sum));
+  }
+  void book_mass_damping(double weight) {
+    mass_damping_work_ += model_.mass_damping * mass_damping_power_ * weight;
+    mass_damping_power_ = 0;
+  }
+
+  /// v_n, once the nodes have moved: v_predicted is then the one for t_{n+1}.
+  CROSSBEAM_INLINE Vec3<T> centre_velocity(int n) const {
+    return T(R(2)) * load<T>(model_.state.v, n) - load<T>(model_.state.v_predicted, n);
   }
 
   /// Kinetic energy at t_n as m v_{n-1/2} v_{n+1/2} / 2, and the tools' works.
@@ -205,7 +268,7 @@ class CentralDifference {
     const T two(R(2));
     for (int n = 0; n < model_.state.node_count; n += lanes) {
       const Vec3<T> v = load<T>(model_.state.v, n);
-      const Vec3<T> before = two * load<T>(model_.state.v_centre, n) - v;
+      const Vec3<T> before = two * centre_velocity(n) - v;
       out.kinetic +=
           0.5 * static_cast<double>(lane_sum(T::load(model_.state.mass.data() + n) * dot(before, v)));
     }
@@ -219,8 +282,10 @@ class CentralDifference {
   }
 
   Model<R> model_;
-  double dt_ = 0, time_ = 0, travel_ = 0, speed_limit_ = 1e6;
-  double mass_damping_work_ = 0, initial_ = 0;
+  std::vector<int> level_start_;
+  std::vector<double> travel_;  // bound of how far any node of a level has moved [mm]
+  double dt_ = 0, time_ = 0, tool_travel_ = 0, speed_limit_ = 1e6;
+  double mass_damping_work_ = 0, mass_damping_power_ = 0, initial_ = 0;
   long long steps_ = 0;
 };
 

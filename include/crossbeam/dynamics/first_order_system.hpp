@@ -24,6 +24,7 @@ class FirstOrderSystem {
   /// @throws InputError for a contact that is not in rate form, and for a moving tool without its
   ///   velocity
   explicit FirstOrderSystem(Model<double>& model) : model_(model) {
+    model.require_no_memory();
     for (std::size_t k = 0; k < model.tools.size(); ++k) {
       const std::string field = "tools[" + std::to_string(k) + "]";
       if (!model.tools[k]->is_rate_form())
@@ -74,9 +75,9 @@ class FirstOrderSystem {
       s.x.x[n] = y[3 * n];
       s.x.y[n] = y[3 * n + 1];
       s.x.z[n] = y[3 * n + 2];
-      s.v.x[n] = s.v_centre.x[n] = v[3 * n];
-      s.v.y[n] = s.v_centre.y[n] = v[3 * n + 1];
-      s.v.z[n] = s.v_centre.z[n] = v[3 * n + 2];
+      s.v.x[n] = s.v_predicted.x[n] = v[3 * n];
+      s.v.y[n] = s.v_predicted.y[n] = v[3 * n + 1];
+      s.v.z[n] = s.v_predicted.z[n] = v[3 * n + 2];
     }
     for (std::size_t k = 0, free = 0; k < model_.tools.size(); ++k) {
       const ToolMotion& motion = model_.tools[k]->motion();

@@ -6,6 +6,7 @@
 #include "crossbeam/mesh/nodal_state.hpp"
 #include "crossbeam/mesh/tangent_entries.hpp"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,25 @@ class ForceBlock {
   virtual ~ForceBlock() = default;
   /// Subtracts the internal forces at x_n from state.f.
   virtual void add_forces(NodalState<R>& state, double dt) = 0;
+
+  /// @name The same in stages, one for each level of nodes, tag [S-3]
+  /// @{
+  /// Largest difference of two node numbers that are worked on at the same time; `whole` for a block
+  /// that knows no stages and is asked for all at once.
+  [[nodiscard]] virtual int bandwidth() const { return whole; }
+  static constexpr int whole = std::numeric_limits<int>::max();
+  /// Sorts the work: what touches level s and none above is stage s.
+  /// @param level_start first node of every level and the end; levels are wider than the bandwidth
+  virtual void arrange(const std::vector<int>& /*level_start*/) {}
+  virtual void begin_step() {}
+  virtual void add_forces(NodalState<R>& state, double dt, int stage) {
+    if (stage == 0) add_forces(state, dt);
+  }
+  /// @}
+
+  /// Whether the forces depend on the positions of earlier steps, which other integrators and the
+  /// statics cannot offer.
+  [[nodiscard]] virtual bool has_memory() const { return false; }
   /// Energies at x_n.
   virtual void add_energy(const NodalState<R>& state, InternalEnergy& energy) const = 0;
   /// Bound of the squared highest frequency of these forces on the lumped mass [1/ms^2]. Constant.

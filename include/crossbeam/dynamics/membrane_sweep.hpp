@@ -5,6 +5,7 @@
 
 #include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/membrane.hpp"
+#include "crossbeam/dynamics/membrane_tangent.hpp"
 #include "crossbeam/mesh/batches.hpp"
 
 #include <Eigen/Cholesky>
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace crossbeam {
 
@@ -31,7 +33,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   static constexpr int M = Element::membrane_vectors;
   static constexpr int K = Element::vectors;
   static constexpr int corners = Element::corners;
-  static constexpr int point_size = 2 * M + 1;  ///< constants of one point: t1, t2, weight
+  static constexpr int point_size = 2 * M + 2;  ///< constants of one point: t1, t2, weight, viscosity
   /// A cell without a potential has its yarn work summed along the path instead.
   static constexpr bool has_energy = requires(const Law& law, const FibreStrain<T>& b) {
     law.yarn_energy(law.evaluate(b));
@@ -40,6 +42,13 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   static constexpr bool has_tangent = requires(const Law& law, const FibreStrain<T>& b) {
     { law.hessian(law.evaluate(b)) } -> std::same_as<StrainHessian<T>>;
   };
+
+  /// Whether the law keeps the heights of its cells from step to step.
+  static constexpr bool follows =
+      requires(const Law& law, CrimpHeights<T>& h, T& m) {
+        requires Law::follows_heights;
+        law.follow(m, m, m, m, h, m, m);
+      };
 
   /// A law of one's own need not have a cell; then there is nothing of a cell to sample.
   static constexpr bool has_cell = requires(const Law& law) { law.cell().parameters(); };
@@ -51,6 +60,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         batches_(mesh.elements),
         constants_(batches_.size(), Element::points * point_size + (Element::has_hourglass ? 3 : 0)),
         previous_(has_energy ? 0 : batches_.size(), has_energy ? 0 : Element::points * 4),
+        heights_(follows ? batches_.size() : 0, follows ? Element::points * 2 : 0),
         element_count_(mesh.element_count()) {
     hourglass_ = R(require_non_negative("hourglass_modulus", options.hourglass_modulus, "kN/mm"));
     require_non_negative("bulk_viscosity", options.bulk_viscosity, "-");
@@ -79,16 +89,31 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
           std::max(damping_rate_, impedance * std::sqrt(area) / stiffness * omega_squared);
     }
     viscosity_ = options.bulk_viscosity > 0;
-    impedance_ = R(impedance);
     for (int b = 0; b < batches_.size(); ++b)
-      for (int l = 0; l < lanes; ++l) fill_constants(mesh, b, l);
+      for (int l = 0; l < lanes; ++l) fill_constants(mesh, b, l, impedance);
+    collapse_constants();
+  }
+
+  [[nodiscard]] int bandwidth() const override { return batches_.bandwidth(); }
+  void arrange(const std::vector<int>& level_start) override { batches_.arrange(level_start); }
+
+  void begin_step() override {
+    started_ = begun_;
+    begun_ = true;
+    viscous_step_ = 0;
   }
 
   void add_forces(NodalState<R>& state, double dt) override {
+    begin_step();
+    for (int stage = 0; stage < batches_.stages(); ++stage) add_forces(state, dt, stage);
+  }
+
+  void add_forces(NodalState<R>& state, double dt, int stage) override {
+    const int first = batches_.first_run(stage), last = batches_.first_run(stage + 1);
     if (viscosity_)
-      sweep<true>(state, dt);
+      sweep<true>(state, dt, first, last);
     else
-      sweep<false>(state, dt);
+      sweep<false>(state, dt, first, last);
   }
 
   void add_energy(const NodalState<R>& state, InternalEnergy& energy) const override {
@@ -100,7 +125,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       T yarn(R(0)), shear(R(0)), hourglass(R(0));
       for (int p = 0; p < Element::points; ++p) {
         const PointLanes<T, M> point = load_point(b, p);
-        const auto at = law_.evaluate(strain(PointKinematics<T, M, K>(D, point), active));
+        const auto at = law_.evaluate(strain(PointKinematics<T, M, K>(D, point), batch));
         if constexpr (has_energy) yarn = yarn + point.weight * law_.yarn_energy(at);
         shear = shear + point.weight * law_.shear_energy(at);
       }
@@ -125,6 +150,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       ForceBlock<R>::add_tangent(state, tangent);
   }
 
+  [[nodiscard]] bool has_memory() const override { return follows; }
   [[nodiscard]] double omega_squared() const override { return omega_squared_; }
   [[nodiscard]] double damping_rate() const override { return damping_rate_; }
   [[nodiscard]] long long points() const override {
@@ -139,13 +165,12 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     const double share = 1.0 / Element::points;
     for (int b = 0; b < batches_.size(); ++b) {
       const auto& batch = batches_[b];
-      const auto active = batches_.active(batch);
       Vec3<T> D[K];
       relative_vectors(state.x, batch, D);
       for (int p = 0; p < Element::points; ++p) {
         const PointLanes<T, M> point = load_point(b, p);
         const PointKinematics<T, M, K> kinematics(D, point);
-        const auto at = law_.evaluate(strain(kinematics, active));
+        const auto at = law_.evaluate(strain(kinematics, batch));
         const T cosine = fibre_cosine(at.fibres.beta, at.fibres.lambda1, at.fibres.lambda2,
                                       law_.reference().cosine);
         const T gamma = shear_angle(cosine, law_.reference());
@@ -194,181 +219,275 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       s.fallback = s.fallback || at.cell.fallback[lane] > R(0);
   }
 
-  using Block = Eigen::Matrix<double, 3 * K, 3 * K>;
-
-  static Eigen::Vector3d lane_of(const Vec3<T>& v, int lane) {
+  static Vec3<double> lane_of(const Vec3<T>& v, int lane) {
     return {static_cast<double>(v.x[lane]), static_cast<double>(v.y[lane]),
             static_cast<double>(v.z[lane])};
   }
 
-  /// The element's tangent for its relative vectors D, then for its corners, tag.
   void assemble(const NodalState<R>& state, TangentEntries& tangent) const {
-    // D_k = sum_a C_ak x_a
-    Eigen::Matrix<double, 3 * K, 3 * corners> map = decltype(map)::Zero();
-    for (int a = 0; a < corners; ++a) {
-      Vec3<double> x[corners], D[K];
-      x[a].x = 1;
-      Element::relative_vectors(x, D);
-      for (int k = 0; k < K; ++k)
-        map.template block<3, 3>(3 * k, 3 * a) = D[k].x * Eigen::Matrix3d::Identity();
-    }
+    MembraneTangent<Element> element;
     for (int b = 0; b < batches_.size(); ++b) {
       const Batch& batch = batches_[b];
-      const auto active = batches_.active(batch);
       Vec3<T> D[K], v[corners], rate[K];
       relative_vectors(state.x, batch, D);
       for (int a = 0; a < corners; ++a) v[a] = batches_.gather(state.v, batch, a);
       Element::relative_vectors(v, rate);
-      Block stiffness[lanes], damping[lanes];
-      for (int l = 0; l < batch.active; ++l) {
-        stiffness[l].setZero();
-        damping[l].setZero();
-      }
+      MembranePointTangent<M> at_point[Element::points][lanes];
       for (int p = 0; p < Element::points; ++p) {
         const PointLanes<T, M> point = load_point(b, p);
         const PointKinematics<T, M, K> kinematics(D, point), rates(rate, point);
-        const auto at = law_.evaluate(strain(kinematics, active));
+        const auto at = law_.evaluate(strain(kinematics, batch));
         const FibreStress<T> m = law_.stress(at);
         const StrainHessian<T> h = law_.hessian(at);
-        const T mu = viscosity_coefficient(point);
-        for (int l = 0; l < batch.active; ++l)
-          add_point_tangent(point, kinematics, rates, m, h, mu, l, stiffness[l], damping[l]);
-      }
-      if constexpr (Element::has_hourglass) {
-        const T p1 = constants_.load(b, hourglass_at), p2 = constants_.load(b, hourglass_at + 1);
-        const T k = hourglass_stiffness(b);
+        const T mu = viscosity_coefficient(b, p);
         for (int l = 0; l < batch.active; ++l) {
-          const Eigen::Vector3d g(-static_cast<double>(p1[l]), -static_cast<double>(p2[l]), 1);
-          for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-              stiffness[l].template block<3, 3>(3 * i, 3 * j) +=
-                  static_cast<double>(k[l]) * g(i) * g(j) * Eigen::Matrix3d::Identity();
+          const auto real = [l](const T& x) { return static_cast<double>(x[l]); };
+          MembranePointTangent<M>& out = at_point[p][l];
+          for (int k = 0; k < M; ++k) {
+            out.t[0][k] = real(point.t1[k]);
+            out.t[1][k] = real(point.t2[k]);
+          }
+          out.weight = real(point.weight);
+          out.viscosity = real(mu);
+          out.f[0] = lane_of(kinematics.f1, l);
+          out.f[1] = lane_of(kinematics.f2, l);
+          out.rate[0] = lane_of(rates.f1, l);
+          out.rate[1] = lane_of(rates.f2, l);
+          out.stress = {real(m.m11), real(m.m22), real(m.m12)};
+          out.hessian = {real(h.h11), real(h.h22), real(h.h33),
+                         real(h.h12), real(h.h13), real(h.h23)};
         }
       }
       for (int l = 0; l < batch.active; ++l) {
-        add_corners(tangent.stiffness, b, l, map.transpose() * stiffness[l] * map);
-        if (tangent.with_damping && viscosity_)
-          add_corners(tangent.damping, b, l, map.transpose() * damping[l] * map);
+        element.clear();
+        for (int p = 0; p < Element::points; ++p) element.add(at_point[p][l]);
+        if constexpr (Element::has_hourglass)
+          element.add_hourglass(static_cast<double>(constants_.load(b, hourglass_at)[l]),
+                                static_cast<double>(constants_.load(b, hourglass_at + 1)[l]),
+                                static_cast<double>(hourglass_stiffness(b)[l]));
+        std::array<int, corners> node;
+        for (int a = 0; a < corners; ++a) node[a] = batches_.node(b, a, l);
+        element.assemble(node, viscosity_, tangent);
       }
     }
   }
 
-  /// Derivatives of add_point_forces by D_k and its rate, in one lane.
-  void add_point_tangent(const PointLanes<T, M>& point, const PointKinematics<T, M, K>& kinematics,
-                         const PointKinematics<T, M, K>& rates, const FibreStress<T>& m,
-                         const StrainHessian<T>& h, const T& mu, int l, Block& stiffness,
-                         Block& damping) const {
-    const auto real = [l](const T& x) { return static_cast<double>(x[l]); };
-    const Eigen::Vector3d f[2] = {lane_of(kinematics.f1, l), lane_of(kinematics.f2, l)};
-    const Eigen::Vector3d rate[2] = {lane_of(rates.f1, l), lane_of(rates.f2, l)};
-    Eigen::Matrix3d H;
-    H << real(h.h11), real(h.h12), real(h.h13), real(h.h12), real(h.h22), real(h.h23), real(h.h13),
-        real(h.h23), real(h.h33);
-    // Derivatives of (beta11, beta22, beta12) by f1 and f2, then of the point's P1 and P2.
-    Eigen::Matrix<double, 3, 6> B = decltype(B)::Zero();
-    B.template block<1, 3>(0, 0) = f[0].transpose();
-    B.template block<1, 3>(1, 3) = f[1].transpose();
-    B.template block<1, 3>(2, 0) = 0.5 * f[1].transpose();
-    B.template block<1, 3>(2, 3) = 0.5 * f[0].transpose();
-    Eigen::Matrix<double, 6, 6> S = B.transpose() * H * B, C = decltype(C)::Zero();
-    const double stress[2][2] = {{real(m.m11), real(m.m12)}, {real(m.m12), real(m.m22)}};
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j)
-        S.template block<3, 3>(3 * i, 3 * j) += stress[i][j] * Eigen::Matrix3d::Identity();
-    if (viscosity_)
-      for (int i = 0; i < 2; ++i) {  // [D-5]: P_i = mu (f.rate) f / (f.f)
-        const double Q = f[i].squaredNorm(), power = f[i].dot(rate[i]), c = real(mu) / Q;
-        C.template block<3, 3>(3 * i, 3 * i) = c * f[i] * f[i].transpose();
-        S.template block<3, 3>(3 * i, 3 * i) +=
-            c * (power * Eigen::Matrix3d::Identity() + f[i] * rate[i].transpose() -
-                 2 * power / Q * f[i] * f[i].transpose());
+  /// What the loops over one run hand on to each other: it stays in the first-level cache.
+  struct Work {
+    static constexpr int size = IndexBatches<corners, T>::run_capacity;
+    struct Buffer {
+      alignas(64) R number[size];
+      CROSSBEAM_INLINE T load(int i) const { return T::load(number + i); }
+      CROSSBEAM_INLINE void store(int i, const T& value) { value.store(number + i); }
+    };
+    struct Vectors {
+      Buffer x, y, z;
+      CROSSBEAM_INLINE Vec3<T> load(int i) const { return {x.load(i), y.load(i), z.load(i)}; }
+      CROSSBEAM_INLINE void store(int i, const Vec3<T>& v) {
+        x.store(i, v.x);
+        y.store(i, v.y);
+        z.store(i, v.z);
       }
-    const double weight = real(point.weight);
-    for (int k = 0; k < M; ++k)
-      for (int n = 0; n < M; ++n) {
-        const double t[2][2] = {
-            {real(point.t1[k]) * real(point.t1[n]), real(point.t1[k]) * real(point.t2[n])},
-            {real(point.t2[k]) * real(point.t1[n]), real(point.t2[k]) * real(point.t2[n])}};
-        for (int i = 0; i < 2; ++i)
-          for (int j = 0; j < 2; ++j) {
-            stiffness.template block<3, 3>(3 * k, 3 * n) +=
-                weight * t[i][j] * S.template block<3, 3>(3 * i, 3 * j);
-            damping.template block<3, 3>(3 * k, 3 * n) +=
-                weight * t[i][j] * C.template block<3, 3>(3 * i, 3 * j);
-          }
-      }
-  }
+    };
+    Vectors D[K], force[K];   ///< relative vectors, generalised forces: of more than one point
+    Vectors hourglass;        ///< its force
+    Vectors f1, f2;           ///< of the present point
+    Buffer b11, b22, b12, inv1, inv2, u1, u2, m11, m22, m12;
+    RunForces<corners, T> corner;
+  };
 
-  void add_corners(std::vector<TangentEntries::Entry>& list, int b, int lane,
-                   const Eigen::Matrix<double, 3 * corners, 3 * corners>& block) const {
-    for (int a = 0; a < corners; ++a)
-      for (int c = 0; c < corners; ++c)
-        TangentEntries::add(list, 3 * batches_.node(b, a, lane), 3 * batches_.node(b, c, lane),
-                            block.template block<3, 3>(3 * a, 3 * c));
-  }
-
+  /// The run in short loops: one body for all of it would be a single chain of dependent roots and
+  /// divisions, too long for the processor to overlap two batches, tag [S-4].
   template <bool Viscous>
-  void sweep(NodalState<R>& state, double dt) {
-    double dissipation = 0;
-    for (int b = 0; b < batches_.size(); ++b) {
-      const Batch& batch = batches_[b];
-      const auto active = batches_.active(batch);
-      Vec3<T> D[K];
-      relative_vectors(state.x, batch, D);
-      [[maybe_unused]] Vec3<T> rate[K];
-      if constexpr (Viscous) {
-        Vec3<T> v[corners];
-        for (int a = 0; a < corners; ++a)
-          v[a] = state.predicted_velocity(batches_.gather(state.v, batch, a),
-                                          batches_.gather(state.v_centre, batch, a));
-        Element::relative_vectors(v, rate);
-      }
-      const T zero(R(0));
-      Vec3<T> force[K];
-      for (int k = 0; k < K; ++k) force[k] = {zero, zero, zero};
-      for (int p = 0; p < Element::points; ++p) {
-        const PointLanes<T, M> point = load_point(b, p);
-        const PointKinematics<T, M, K> kinematics(D, point);
-        const FibreStrain<T> beta = strain(kinematics, active);
-        const auto at = law_.evaluate(beta);
-        FibreStress<T> m = law_.stress(at);
-        if constexpr (!has_energy) book_path(b, p, point, beta, at, active);
-        if constexpr (Viscous) {
-          const PointKinematics<T, M, K> rates(rate, point);
-          const T mu = viscosity_coefficient(point);
-          const T inv1 = T(R(1)) / at.fibres.lambda1, inv2 = T(R(1)) / at.fibres.lambda2;
-          const T r1 = dot(kinematics.f1, rates.f1) * inv1, r2 = dot(kinematics.f2, rates.f2) * inv2;
-          m.m11 = m.m11 + mu * r1 * inv1;
-          m.m22 = m.m22 + mu * r2 * inv2;
-          dissipation += static_cast<double>(
-              lane_sum(select(active, point.weight * mu * (r1 * r1 + r2 * r2), zero)));
-        }
-        add_point_forces(kinematics, m, point, force);
-      }
+  CROSSBEAM_INLINE void run_forces(const Law& law, NodalState<R>& state,
+                                   const typename IndexBatches<corners, T>::Run& run, Work& work,
+                                   T& power) {
+    for (int p = 0; p < Element::points; ++p) {
+      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
+        strain_point(state, run.first_batch + k, p, i, work);
+      stresses(law, run, p, work);
+      if constexpr (Viscous) viscous_stresses(state, run, p, work, power);
+      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
+        collect_point(state, run, k, p, i, work);
+    }
+    if (run.contiguous)
+      work.corner.subtract_from(state.f, run, batches_[run.first_batch].first);
+  }
+
+  /// Fibre vectors and strains; at the first point also what all points share.
+  CROSSBEAM_INLINE void strain_point(const NodalState<R>& state, int b, int p, int i, Work& work) {
+    Vec3<T> D[K];
+    if (p == 0) {
+      relative_vectors(state.x, batches_[b], D);
       if constexpr (Element::has_hourglass) {
-        const Vec3<T> q = hourglass_stiffness(b) * hourglass_vector(b, D);
+        if (hourglass_ > R(0)) work.hourglass.store(i, hourglass_stiffness(b) * hourglass_vector(b, D));
+      } else if constexpr (Element::points > 1) {
+        CROSSBEAM_UNROLL
+        for (int v = 0; v < K; ++v) work.D[v].store(i, D[v]);
+      }
+    } else {
+      CROSSBEAM_UNROLL
+      for (int v = 0; v < K; ++v) D[v] = work.D[v].load(i);
+    }
+    const PointKinematics<T, M, K> kinematics(D, load_point(b, p));
+    const FibreStrain<T> beta = strain(kinematics, batches_[b]);
+    work.f1.store(i, kinematics.f1);
+    work.f2.store(i, kinematics.f2);
+    work.b11.store(i, beta.b11);
+    work.b22.store(i, beta.b22);
+    work.b12.store(i, beta.b12);
+  }
+
+  /// Adds the point's generalised forces, and after the last point gives them to the corners.
+  CROSSBEAM_INLINE void collect_point(NodalState<R>& state,
+                                      const typename IndexBatches<corners, T>::Run& run, int k,
+                                      int p, int i, Work& work) {
+    const int b = run.first_batch + k;
+    const T zero(R(0));
+    Vec3<T> force[K];
+    CROSSBEAM_UNROLL
+    for (int v = 0; v < K; ++v)
+      force[v] = p == 0 ? Vec3<T>{zero, zero, zero} : work.force[v].load(i);
+    add_point_forces(PointKinematics<T, M, K>(work.f1.load(i), work.f2.load(i)),
+                     {work.m11.load(i), work.m22.load(i), work.m12.load(i)}, load_point(b, p),
+                     force);
+    if (p + 1 < Element::points) {
+      CROSSBEAM_UNROLL
+      for (int v = 0; v < K; ++v) work.force[v].store(i, force[v]);
+      return;
+    }
+    if constexpr (Element::has_hourglass)
+      if (hourglass_ > R(0)) {
+        const Vec3<T> q = work.hourglass.load(i);
         force[0] = force[0] - constants_.load(b, hourglass_at) * q;
         force[1] = force[1] - constants_.load(b, hourglass_at + 1) * q;
         force[2] = force[2] + q;
       }
-      if (batch.active < lanes)
-        for (int k = 0; k < K; ++k)
-          force[k] = {select(active, force[k].x, zero), select(active, force[k].y, zero),
-                      select(active, force[k].z, zero)};
-      Vec3<T> corner[corners];
-      Element::corner_forces(force, corner);
+    const Batch& batch = batches_[b];
+    if (batch.active < lanes) {
+      const auto active = batches_.active(batch);
+      CROSSBEAM_UNROLL
+      for (int v = 0; v < K; ++v)
+        force[v] = {select(active, force[v].x, zero), select(active, force[v].y, zero),
+                    select(active, force[v].z, zero)};
+    }
+    Vec3<T> corner[corners];
+    Element::corner_forces(force, corner);
+    if (run.contiguous) {
+      CROSSBEAM_UNROLL
+      for (int a = 0; a < corners; ++a) work.corner.put(a, i, corner[a]);
+    } else {
       for (int a = 0; a < corners; ++a) batches_.subtract(state.f, batch, a, corner[a]);
     }
-    if constexpr (Viscous) {
-      viscous_step_ = dissipation * dt;
-      viscous_work_ += started_ ? viscous_step_ : 0.5 * viscous_step_;  // nothing before t = 0
-      started_ = true;
+  }
+
+  CROSSBEAM_INLINE void stresses(const Law& law, const typename IndexBatches<corners, T>::Run& run,
+                                 int p, Work& work) {
+    if constexpr (follows) {
+      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+        T u1, u2, inv1, inv2;
+        law.elongate(work.b11.load(i), work.b22.load(i), u1, u2, inv1, inv2);
+        work.u1.store(i, u1);
+        work.u2.store(i, u2);
+        work.inv1.store(i, inv1);
+        work.inv2.store(i, inv2);
+      }
+      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+        const int b = run.first_batch + k;
+        CrimpHeights<T> heights{heights_.load(b, 2 * p), heights_.load(b, 2 * p + 1)};
+        T m11, m22;
+        law.follow(work.u1.load(i), work.u2.load(i), work.inv1.load(i), work.inv2.load(i), heights,
+                   m11, m22);
+        heights_.store(b, 2 * p, heights.w1);
+        heights_.store(b, 2 * p + 1, heights.w2);
+        work.m11.store(i, m11);
+        work.m22.store(i, m22);
+      }
+      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+        const FibreStress<T> m = law.with_shear(
+            FibreStrain<T>{work.b11.load(i), work.b22.load(i), work.b12.load(i)},
+            work.inv1.load(i), work.inv2.load(i), work.m11.load(i), work.m22.load(i));
+        work.m11.store(i, m.m11);
+        work.m22.store(i, m.m22);
+        work.m12.store(i, m.m12);
+      }
+    } else {
+      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+        const int b = run.first_batch + k;
+        const FibreStrain<T> beta{work.b11.load(i), work.b22.load(i), work.b12.load(i)};
+        const auto at = law.evaluate(beta);
+        if constexpr (!has_energy)
+          book_path(b, p, load_point(b, p), beta, at, batches_.active(batches_[b]));
+        const FibreStress<T> m = law.stress(at);
+        const InverseStretches<T> inv(at.fibres.lambda1, at.fibres.lambda2);
+        work.inv1.store(i, inv.first);
+        work.inv2.store(i, inv.second);
+        work.m11.store(i, m.m11);
+        work.m22.store(i, m.m22);
+        work.m12.store(i, m.m12);
+      }
     }
+  }
+
+  /// [D-5]; `power` collects what it takes.
+  CROSSBEAM_INLINE void viscous_stresses(const NodalState<R>& state,
+                                         const typename IndexBatches<corners, T>::Run& run, int p,
+                                         Work& work, T& power) {
+    for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+      const int b = run.first_batch + k;
+      const Batch& batch = batches_[b];
+      Vec3<T> rate[K];
+      relative_vectors(state.v_predicted, batch, rate);
+      const PointLanes<T, M> point = load_point(b, p);
+      const PointKinematics<T, M, K> rates(rate, point);
+      const T mu = viscosity_coefficient(b, p);
+      const T inv1 = work.inv1.load(i), inv2 = work.inv2.load(i);
+      const T r1 = dot(work.f1.load(i), rates.f1) * inv1;
+      const T r2 = dot(work.f2.load(i), rates.f2) * inv2;
+      work.m11.store(i, work.m11.load(i) + mu * r1 * inv1);
+      work.m22.store(i, work.m22.load(i) + mu * r2 * inv2);
+      T lost = point.weight * mu * (r1 * r1 + r2 * r2);
+      if (batch.active < lanes) lost = select(batches_.active(batch), lost, T(R(0)));
+      power = power + lost;
+    }
+  }
+
+  template <bool Viscous>
+  void sweep(NodalState<R>& state, double dt, int first_run, int last_run) {
+    if constexpr (follows)
+      if (!heights_known_) begin_heights(state);
+    // A copy that no store can change: its constants then stay in registers or on the stack.
+    using LocalLaw = std::conditional_t<std::is_trivially_copyable_v<Law>, const Law, const Law&>;
+    LocalLaw law = law_;
+    T power(R(0));
+    Work work;
+    for (int r = first_run; r < last_run; ++r)
+      run_forces<Viscous>(law, state, batches_.run(r), work, power);
+    if constexpr (Viscous) {
+      const double step = static_cast<double>(lane_sum(power)) * dt;
+      viscous_step_ += step;
+      viscous_work_ += started_ ? step : 0.5 * step;  // nothing before t = 0
+    }
+  }
+
+  void begin_heights(const NodalState<R>& state) {
+    for (int b = 0; b < batches_.size(); ++b) {
+      Vec3<T> D[K];
+      relative_vectors(state.x, batches_[b], D);
+      for (int p = 0; p < Element::points; ++p) {
+        const auto at = law_.evaluate(
+            strain(PointKinematics<T, M, K>(D, load_point(b, p)), batches_[b]));
+        heights_.store(b, 2 * p, at.cell.forces.w1);
+        heights_.store(b, 2 * p + 1, at.cell.forces.w2);
+      }
+    }
+    heights_known_ = true;
   }
 
   CROSSBEAM_INLINE void relative_vectors(const NodeVectors<R>& x, const Batch& batch,
                                          Vec3<T> (&D)[K]) const {
     Vec3<T> corner[corners];
+    CROSSBEAM_UNROLL
     for (int a = 0; a < corners; ++a) corner[a] = batches_.gather(x, batch, a);
     Element::relative_vectors(corner, D);
   }
@@ -384,12 +503,15 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   }
 
   /// Strain of a point; idle lanes are kept at rest, whatever nodes they read.
-  template <class Mask>
   CROSSBEAM_INLINE FibreStrain<T> strain(const PointKinematics<T, M, K>& kinematics,
-                                         const Mask& active) const {
-    const FibreStrain<T> b = kinematics.strain(law_.reference().cosine);
-    const T zero(R(0));
-    return {select(active, b.b11, zero), select(active, b.b22, zero), select(active, b.b12, zero)};
+                                         const Batch& batch) const {
+    FibreStrain<T> b = kinematics.strain(law_.reference().cosine);
+    if (batch.active < lanes) {
+      const auto active = batches_.active(batch);
+      const T zero(R(0));
+      b = {select(active, b.b11, zero), select(active, b.b22, zero), select(active, b.b12, zero)};
+    }
+    return b;
   }
 
   CROSSBEAM_INLINE Vec3<T> hourglass_vector(int b, const Vec3<T> (&D)[K]) const {
@@ -399,9 +521,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   CROSSBEAM_INLINE T hourglass_stiffness(int b) const {
     return T(hourglass_) * constants_.load(b, hourglass_at + 2);
   }
-  CROSSBEAM_INLINE T viscosity_coefficient(const PointLanes<T, M>& point) const {
-    using std::sqrt;
-    return T(impedance_) * sqrt(T(R(Element::points)) * point.weight);
+  CROSSBEAM_INLINE T viscosity_coefficient(int b, int p) const {
+    return constants_.load(b, p * point_size + 2 * M + 1);
   }
 
   template <class State, class Mask>
@@ -424,7 +545,25 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         static_cast<double>(lane_sum(select(active, at.cell.fallback, zero))) + 0.5);
   }
 
-  void fill_constants(const Mesh<corners>& mesh, int b, int lane) {
+  /// Coefficients are compared with the largest of their point, [1/length].
+  void collapse_constants() {
+    constants_.collapse_if_uniform(
+        [this](int c) {
+          R largest(0);
+          const int point = c / point_size * point_size;
+          if (c < Element::points * point_size && c % point_size < 2 * M)
+            for (int k = 0; k < 2 * M; ++k)
+              largest = std::max(largest, std::abs(constants_.at(0, point + k, 0)));
+          else if (c < Element::points * point_size || c == hourglass_at + 2)
+            largest = std::abs(constants_.at(0, c, 0));
+          else
+            largest = R(1);
+          return largest;
+        },
+        [this](int b) { return batches_[b].active; });
+  }
+
+  void fill_constants(const Mesh<corners>& mesh, int b, int lane, double impedance) {
     const int e = batches_.tuple(b, lane);
     const auto X = mesh.corners(e);
     const auto points = Element::coefficients(X, mesh.fibres[e]);
@@ -434,6 +573,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         constants_.at(b, p * point_size + M + k, lane) = R(points[p].t2[k]);
       }
       constants_.at(b, p * point_size + 2 * M, lane) = R(points[p].weight);
+      constants_.at(b, p * point_size + 2 * M + 1, lane) =
+          R(impedance * std::sqrt(Element::points * points[p].weight));
     }
     if constexpr (Element::has_hourglass) {
       const auto h = Element::hourglass(X);
@@ -479,9 +620,10 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   IndexBatches<corners, T> batches_;
   LaneArray<T> constants_;
   LaneArray<T> previous_;
+  LaneArray<T> heights_;  // of the cells, where the law follows them
   int element_count_;
-  R hourglass_{}, impedance_{};
-  bool viscosity_ = false, started_ = false;
+  R hourglass_{};
+  bool viscosity_ = false, started_ = false, begun_ = false, heights_known_ = false;
   double omega_squared_ = 0, damping_rate_ = 0;
   double viscous_work_ = 0, viscous_step_ = 0, path_work_ = 0;
   long long fallbacks_ = 0;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,10 +40,34 @@ struct Model {
     for (const auto& t : tools) t->add_forces(state, dt, travel);
   }
 
-  void clear_forces() {
-    std::fill(state.f.x.begin(), state.f.x.end(), R(0));
-    std::fill(state.f.y.begin(), state.f.y.end(), R(0));
-    std::fill(state.f.z.begin(), state.f.z.end(), R(0));
+  void clear_forces() { clear_forces(0, static_cast<int>(state.f.x.size())); }
+  void clear_forces(int first, int last) {
+    for (auto* component : {&state.f.x, &state.f.y, &state.f.z})
+      std::fill(component->begin() + first, component->begin() + last, R(0));
+  }
+
+  /// Cuts the nodes into levels wide enough that no piece of work touches more than two, and sorts
+  /// the blocks' work by them, tag [S-3].
+  /// @param least nodes of a level, at least
+  /// @return first node of every level and the end, all of them multiples of the array padding
+  [[nodiscard]] std::vector<int> arrange(int least) {
+    const int end = (state.node_count + array_padding - 1) / array_padding * array_padding;
+    int width = std::max(least, array_padding);
+    for (const auto& b : blocks) width = std::max(width, std::min(b->bandwidth(), end));
+    width = (width + array_padding - 1) / array_padding * array_padding;
+    std::vector<int> level_start;
+    for (int n = 0; n < end; n += width) level_start.push_back(n);
+    level_start.push_back(end);
+    for (const auto& b : blocks) b->arrange(level_start);
+    return level_start;
+  }
+
+  /// @throws InputError for a block whose forces depend on earlier steps
+  void require_no_memory() const {
+    for (std::size_t k = 0; k < blocks.size(); ++k)
+      if (blocks[k]->has_memory())
+        throw InputError("blocks[" + std::to_string(k) + "] cells", "followed from step to step", "",
+                         "solved anew at every evaluation, which is what this method can use");
   }
 
   /// Bound of the critical step [ms], tag [D-3]: all stiffnesses together with the fabric's

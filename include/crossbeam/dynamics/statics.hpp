@@ -23,6 +23,7 @@ class StaticProblem {
   /// @param model changed by every call below; it must outlive the problem
   /// @param time  whose tool positions and forces are held [ms]
   StaticProblem(Model<double>& model, double time) : model_(model), time_(time) {
+    model.require_no_memory();
     for (std::size_t k = 0; k < model.tools.size(); ++k) {
       model.tools[k]->come_to_rest(model.state);
       const ToolMotion& motion = model.tools[k]->motion();
@@ -32,7 +33,7 @@ class StaticProblem {
         model.tools[k]->place(motion.position(time), 0);
     }
     unknowns_ = 3 * model.state.node_count + static_cast<int>(free_tools_.size());
-    for (auto* v : {&model.state.v, &model.state.v_centre})
+    for (auto* v : {&model.state.v, &model.state.v_predicted})
       for (auto* component : {&v->x, &v->y, &v->z})
         std::fill(component->begin(), component->end(), 0.0);
   }

@@ -28,6 +28,7 @@ concept MembraneLaw = requires(const Law& law, const FibreStrain<T>& beta) {
 template <int M, class T, int K>
 CROSSBEAM_INLINE Vec3<T> fibre_vector(const Vec3<T> (&D)[K], const T (&t)[M]) {
   Vec3<T> f = t[0] * D[0];
+  CROSSBEAM_UNROLL
   for (int k = 1; k < M; ++k) f = f + t[k] * D[k];
   return f;
 }
@@ -49,6 +50,7 @@ struct PointKinematics {
   }
   CROSSBEAM_INLINE PointKinematics(const Vec3<T> (&D)[K], const PointLanes<T, M>& point)
       : f1(fibre_vector<M>(D, point.t1)), f2(fibre_vector<M>(D, point.t2)) {}
+  CROSSBEAM_INLINE PointKinematics(const Vec3<T>& warp, const Vec3<T>& weft) : f1(warp), f2(weft) {}
 };
 
 /// Adds weight * (m^{ij} f_j) t_ik to the generalised forces R_k, the derivatives of the point's
@@ -60,6 +62,7 @@ CROSSBEAM_INLINE void add_point_forces(const PointKinematics<T, M, K>& kinematic
   const T a11 = point.weight * m.m11, a22 = point.weight * m.m22, a12 = point.weight * m.m12;
   const Vec3<T> P1 = a11 * kinematics.f1 + a12 * kinematics.f2;
   const Vec3<T> P2 = a12 * kinematics.f1 + a22 * kinematics.f2;
+  CROSSBEAM_UNROLL
   for (int k = 0; k < M; ++k) R[k] = R[k] + (point.t1[k] * P1 + point.t2[k] * P2);
 }
 

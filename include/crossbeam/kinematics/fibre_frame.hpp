@@ -47,6 +47,32 @@ CROSSBEAM_INLINE T pack_asin(const T& x) {
   return select(x < T(0), -angle, angle);
 }
 
+/// arcsin x with root = sqrt(1 - x^2) given, tag [K-5]: turned by 0, 45 or 90 deg into the octant
+/// about zero.
+template <class T>
+CROSSBEAM_INLINE T pack_asin(const T& x, const T& root) {
+  using R = real_t<T>;
+  constexpr double coefficients[] = {
+      0.016704469823119172097, 0.0067766208113588982398, 0.012108832256164656683,
+      0.013903570830247274449, 0.017356883357138812016,  0.022371991792930005289,
+      0.030381948327824196116, 0.044642857097249666853,  0.075000000000207138572,
+      0.16666666666666651186};
+  constexpr double sine_of_octant = 0.38268343236508977173;  // sin(pi/8)
+  const T a = minimum(magnitude(x), T(1));
+  const auto middle = a > T(R(sine_of_octant)), large = root < T(R(sine_of_octant));
+  const T s = select(large, -root,
+                     select(middle, (a - root) * T(R(1 / std::numbers::sqrt2)), a));
+  const T turned = select(large, T(half_pi<R>()), select(middle, T(half_pi<R>() / R(2)), T(0)));
+  const T z = s * s, y = z * z;
+  T odd = T(R(coefficients[0])), even = T(R(coefficients[1]));  // two chains run side by side
+  for (int k = 2; k < 10; k += 2) {
+    odd = odd * y + T(R(coefficients[k]));
+    even = even * y + T(R(coefficients[k + 1]));
+  }
+  const T angle = turned + (s + s * z * (even + z * odd));
+  return select(x < T(0), -angle, angle);
+}
+
 }  // namespace detail
 
 /// Covariant Green-Lagrange strains in the fibre frame (Eq. 10): beta_ab = (f_a.f_b - F_a.F_b)/2.
@@ -124,11 +150,22 @@ CROSSBEAM_INLINE T relative_elongation(const T& beta, const T& lambda) {
   return (beta + beta) / (T(1) + lambda);
 }
 
+/// 1/lambda1, 1/lambda2 and their product by one division.
+template <class T>
+struct InverseStretches {
+  T first, second, product;
+  CROSSBEAM_INLINE InverseStretches(const T& lambda1, const T& lambda2)
+      : product(T(1) / (lambda1 * lambda2)) {
+    first = product * lambda2;
+    second = product * lambda1;
+  }
+};
+
 /// Cosine of the current angle between the yarns.
 template <class T, class R>
 CROSSBEAM_INLINE T fibre_cosine(const FibreStrain<T>& b, const T& lambda1, const T& lambda2,
                                 R reference_cosine) {
-  return (b.b12 + b.b12 + T(reference_cosine)) / (lambda1 * lambda2);
+  return (b.b12 + b.b12 + T(reference_cosine)) * InverseStretches<T>(lambda1, lambda2).product;
 }
 
 /// arcsin of any scalar: one formula for float, double and packs of them, so that lanes equal
@@ -144,11 +181,29 @@ CROSSBEAM_INLINE T arcsine(const T& x) {
   }
 }
 
+/// The same where the cosine of the answer, root = sqrt(1 - x^2), is known already: no further root,
+/// and a shorter polynomial, tag [K-5].
+template <class T>
+CROSSBEAM_INLINE T arcsine(const T& x, const T& root) {
+  using R = real_t<T>;
+  if constexpr (ScalarTraits<T>::derivative_order == 0 &&
+                (std::is_same_v<R, float> || std::is_same_v<R, double>)) {
+    return detail::pack_asin(x, root);
+  } else {
+    return arcsine(x);
+  }
+}
+
 /// Signed shear angle gamma = delta_bar - delta [rad]: positive when warp and weft close up. The sine
 /// form is accurate at small angles, tag [K-3].
 template <class T, class R>
 CROSSBEAM_INLINE T shear_angle(const T& cosine, const FibreAngle<R>& reference) {
   return arcsine(cosine) - T(detail::half_pi<R>() - reference.delta);
+}
+/// @param sine sqrt(1 - cosine^2)
+template <class T, class R>
+CROSSBEAM_INLINE T shear_angle(const T& cosine, const T& sine, const FibreAngle<R>& reference) {
+  return arcsine(cosine, sine) - T(detail::half_pi<R>() - reference.delta);
 }
 
 }  // namespace crossbeam

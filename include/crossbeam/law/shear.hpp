@@ -79,7 +79,11 @@ class ConstantShear {
   }
   template <class T>
   CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreState<T>& s) const {
-    const T dW = T(R(2) * G_) * strain(s.beta);
+    return gradient(s.beta, T(0), T(0));
+  }
+  template <class T>
+  CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreStrain<T>& beta, const T&, const T&) const {
+    const T dW = T(R(2) * G_) * strain(beta);
     return {T(a_) * dW, T(0), T(b_) * dW};
   }
   template <class T>
@@ -115,7 +119,13 @@ class AngleShear {
   }
   template <class T>
   CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreState<T>& s) const {
-    const Slope<T> d(s, reference_.cosine);
+    const InverseStretches<T> inv(s.lambda1, s.lambda2);
+    return gradient(s.beta, inv.first, inv.second);
+  }
+  template <class T>
+  CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreStrain<T>& beta, const T& inv1,
+                                              const T& inv2) const {
+    const Slope<T> d(beta, inv1, inv2, reference_.cosine);
     const T gamma = d.angle(reference_);
     const T t = curve_.traction(magnitude(gamma));
     const T tau = select(gamma < T(0), -t, t);
@@ -123,13 +133,14 @@ class AngleShear {
   }
   template <class T>
   CROSSBEAM_INLINE StrainHessian<T> hessian(const FibreState<T>& s) const {
-    const Slope<T> d(s, reference_.cosine);
+    const InverseStretches<T> inverse(s.lambda1, s.lambda2);
+    const Slope<T> d(s.beta, inverse.first, inverse.second, reference_.cosine);
     const T gamma = d.angle(reference_);
     const T t = curve_.traction(magnitude(gamma)), G = curve_.modulus(magnitude(gamma));
     const T tau = select(gamma < T(0), -t, t);
     // d2 gamma = d2 c / k + c dc dc / k^3, with c the fibre cosine and k = sqrt(1 - c^2)  [L-5]
     const T Q1 = s.lambda1 * s.lambda1, Q2 = s.lambda2 * s.lambda2;
-    const T inv = T(1) / (s.lambda1 * s.lambda2);
+    const T inv = inverse.product;
     const T bend = d.c * d.inv_k;  // c dc dc / k^3 = bend g g, because dc = k g
     StrainHessian<T> h;
     h.h11 = T(3) * d.c / (Q1 * Q1) * d.inv_k;
@@ -159,19 +170,20 @@ class AngleShear {
   /// Fibre cosine c and the gradient of gamma = asin c - const with respect to beta.
   template <class T>
   struct Slope {
-    T c, inv_k, g1, g2, g3;
-    CROSSBEAM_INLINE Slope(const FibreState<T>& s, R cosine) {
+    T c, k, inv_k, g1, g2, g3;
+    CROSSBEAM_INLINE Slope(const FibreStrain<T>& beta, const T& inv1, const T& inv2, R cosine) {
       using std::sqrt;
-      c = fibre_cosine(s.beta, s.lambda1, s.lambda2, cosine);
+      const T product = inv1 * inv2;
+      c = (beta.b12 + beta.b12 + T(cosine)) * product;
       // Yarns that fall together: k stays positive, the caller's element check reports the element.
-      inv_k = T(1) / sqrt(maximum(T(1) - c * c, T(std::numeric_limits<R>::epsilon())));
-      const T inv = T(1) / (s.lambda1 * s.lambda2);
-      g1 = -(c * inv_k) / (s.lambda1 * s.lambda1);
-      g2 = -(c * inv_k) / (s.lambda2 * s.lambda2);
-      g3 = T(2) * inv * inv_k;
+      k = sqrt(maximum(T(1) - c * c, T(std::numeric_limits<R>::epsilon())));
+      inv_k = T(1) / k;
+      g1 = -(c * inv_k) * (inv1 * inv1);
+      g2 = -(c * inv_k) * (inv2 * inv2);
+      g3 = T(2) * product * inv_k;
     }
     CROSSBEAM_INLINE T angle(const FibreAngle<R>& reference) const {
-      return shear_angle(c, reference);
+      return shear_angle(c, k, reference);
     }
   };
 
@@ -316,6 +328,10 @@ struct NoShear {
   }
   template <class T>
   CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreState<T>&) const {
+    return {T(0), T(0), T(0)};
+  }
+  template <class T>
+  CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreStrain<T>&, const T&, const T&) const {
     return {T(0), T(0), T(0)};
   }
   template <class T>

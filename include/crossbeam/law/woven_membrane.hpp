@@ -29,11 +29,16 @@ struct FibreStress {
   T m11{}, m22{}, m12{};
 };
 
-template <class Cell, class Shear>
+/// Whether explicit dynamics asks for an equilibrium of its own at every step, or follows the heights
+/// of the cells from step to step, tag [C-14].
+enum class CellPrice { equilibrium, followed };
+
+template <class Cell, class Shear, CellPrice Price = CellPrice::equilibrium>
 class WovenMembrane {
  public:
   using Real = typename Cell::Real;
   using R = Real;
+  static constexpr bool follows_heights = Price == CellPrice::followed;
 
   /// @param width selects the corrected or the literal Eq. 15
   /// @param control how the cell is iterated at every evaluation
@@ -46,6 +51,8 @@ class WovenMembrane {
     L2_ = p.weft.length;
     inv_A0_ = R(1) / (R(p.symmetry) * L1_ * L2_ *
                       (width == YarnWidth::corrected ? reference.sine : R(1)));
+    width1_ = L1_ * inv_A0_;
+    width2_ = L2_ * inv_A0_;
   }
 
   [[nodiscard]] const Cell& cell() const { return cell_; }
@@ -67,25 +74,62 @@ class WovenMembrane {
   template <class T>
   CROSSBEAM_INLINE State<T> evaluate(const FibreStrain<T>& beta) const {
     State<T> s;
-    s.fibres = {beta, stretch(beta.b11), stretch(beta.b22)};
+    s.fibres.beta = beta;
+    stretch_yarns(s.fibres);
     s.u1 = T(L1_) * relative_elongation(beta.b11, s.fibres.lambda1);
     s.u2 = T(L2_) * relative_elongation(beta.b22, s.fibres.lambda2);
     s.cell = cell_.solve(s.u1, s.u2, control_);
     return s;
   }
 
+  /// @name Stress by one residual evaluation of the cell, tag [C-14], for the small steps of explicit
+  /// dynamics: in three parts, so that each makes a loop short enough for the processor to look
+  /// ahead, tag [S-4].
+  /// @{
+  /// Elongations of the yarns and reciprocals of their stretches.
+  template <class T>
+  CROSSBEAM_INLINE void elongate(const T& b11, const T& b22, T& u1, T& u2, T& inv1, T& inv2) const {
+    const T lambda1 = stretch(b11), lambda2 = stretch(b22);
+    const InverseStretches<T> inv(lambda1, lambda2);
+    const T d1 = T(1) + lambda1, d2 = T(1) + lambda2, both = T(2) / (d1 * d2);
+    u1 = T(L1_) * b11 * (both * d2);
+    u2 = T(L2_) * b22 * (both * d1);
+    inv1 = inv.first;
+    inv2 = inv.second;
+  }
+  /// The yarns' share of the stress.
+  /// @param heights those of the last call, which this one moves on
+  template <class T>
+  CROSSBEAM_INLINE void follow(const T& u1, const T& u2, const T& inv1, const T& inv2,
+                               CrimpHeights<T>& heights, T& m11, T& m22) const
+    requires requires(const Cell& c, T u) { c.follow(u, u, heights); }
+  {
+    const YarnForces<T> F = cell_.follow(u1, u2, heights);
+    m11 = F.F1 * T(width1_) * inv1;
+    m22 = F.F2 * T(width2_) * inv2;
+  }
+  /// The shear layer's share added.
+  template <class T>
+  CROSSBEAM_INLINE FibreStress<T> with_shear(const FibreStrain<T>& beta, const T& inv1,
+                                             const T& inv2, const T& m11, const T& m22) const {
+    const StrainGradient<T> g = shear_.gradient(beta, inv1, inv2);
+    return {m11 + g.g1, m22 + g.g2, T(0.5) * g.g3};
+  }
+  /// @}
+
   /// Yarn tensions per unit width, m_i lambda_i, as first Piola-Kirchhoff components (Eq. 15).
   template <class T>
   CROSSBEAM_INLINE Vector2<T> yarn_tension(const State<T>& s) const {
-    return {s.cell.forces.F1 * T(L1_ * inv_A0_), s.cell.forces.F2 * T(L2_ * inv_A0_)};
+    return {s.cell.forces.F1 * T(width1_), s.cell.forces.F2 * T(width2_)};
   }
 
   /// Eq. 15-20 and 26-27: cell + shear, tag [L-1].
   template <class T>
   CROSSBEAM_INLINE FibreStress<T> stress(const State<T>& s) const {
+    const InverseStretches<T> inv(s.fibres.lambda1, s.fibres.lambda2);
     const StrainGradient<T> g = shear_.gradient(s.fibres);
-    return {s.cell.forces.F1 * T(L1_ * inv_A0_) / s.fibres.lambda1 + g.g1,
-            s.cell.forces.F2 * T(L2_ * inv_A0_) / s.fibres.lambda2 + g.g2, T(0.5) * g.g3};
+    return {s.cell.forces.F1 * T(width1_) * inv.first + g.g1,
+            s.cell.forces.F2 * T(width2_) * inv.second + g.g2, T(0.5) * g.g3};
   }
 
   /// Stored energy of the yarns per unit reference area [kN/mm]. Energy cells only.
@@ -108,9 +152,9 @@ class WovenMembrane {
     const CellTangent<T> K = cell_.tangent(s.u1, s.u2, s.cell);
     StrainHessian<T> h = shear_.hessian(s.fibres);
     const T inv1 = T(1) / s.fibres.lambda1, inv2 = T(1) / s.fibres.lambda2;
-    h.h11 = h.h11 + T(L1_ * inv_A0_) * inv1 * inv1 *
+    h.h11 = h.h11 + T(width1_) * inv1 * inv1 *
                         (T(L1_) * K.K11 - s.cell.forces.F1 * inv1);
-    h.h22 = h.h22 + T(L2_ * inv_A0_) * inv2 * inv2 *
+    h.h22 = h.h22 + T(width2_) * inv2 * inv2 *
                         (T(L2_) * K.K22 - s.cell.forces.F2 * inv2);
     h.h12 = h.h12 + T(L1_ * L2_ * inv_A0_) * K.K12 * inv1 * inv2;
     return h;
@@ -122,11 +166,18 @@ class WovenMembrane {
   }
 
  private:
+  template <class T>
+  CROSSBEAM_INLINE static void stretch_yarns(FibreState<T>& fibres) {
+    fibres.lambda1 = stretch(fibres.beta.b11);
+    fibres.lambda2 = stretch(fibres.beta.b22);
+  }
+
   Cell cell_;
   Shear shear_;
   FibreAngle<R> reference_;
   SolverControl control_;
   R L1_{}, L2_{}, inv_A0_{};
+  R width1_{}, width2_{};  ///< L_i / A0
 };
 
 /// @name Stress and tangent in the Cartesian axes Y, for host codes

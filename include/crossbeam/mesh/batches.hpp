@@ -7,7 +7,11 @@
 
 #include "crossbeam/mesh/arrays.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace crossbeam {
@@ -25,6 +29,23 @@ class IndexBatches {
     int active = lanes;              ///< lanes that hold a tuple
     int first_tuple = 0;
   };
+
+  /// Batches of the same stage that follow each other: contiguous ones without a gap, or gathered
+  /// ones.
+  struct Run {
+    int first_batch = 0, batches = 0;
+    int tuples = 0;
+    bool contiguous = false;
+    /// Columns in the order of their nodes. Those less than `reach` nodes apart share a line, so
+    /// that a node meets all their forces at once.
+    std::array<std::uint8_t, Columns> column{}, shift{};
+    std::array<std::uint8_t, Columns> line_end{};
+    int lines = 0;
+  };
+  static constexpr int reach = 8;
+  /// Tuples of a run, at most.
+  static constexpr int run_capacity =
+      std::max(lanes, 256 / Columns / lanes * lanes);
 
   IndexBatches() = default;
   explicit IndexBatches(const std::vector<std::array<int, Columns>>& tuples) {
@@ -50,7 +71,61 @@ class IndexBatches {
       begin += batch.active;
       batches_.push_back(batch);
     }
+    arrange({});
   }
+
+  /// Largest difference of two node numbers in one batch.
+  [[nodiscard]] int bandwidth() const {
+    int widest = 0;
+    for (int b = 0; b < size(); ++b) {
+      int low = node(b, 0, 0), high = low;
+      for (int c = 0; c < Columns; ++c)
+        for (int lane = 0; lane < batches_[b].active; ++lane) {
+          low = std::min(low, node(b, c, lane));
+          high = std::max(high, node(b, c, lane));
+        }
+      widest = std::max(widest, high - low);
+    }
+    return widest;
+  }
+
+  /// Sorts the batches by stage, the highest level of nodes that one touches, and gathers them into
+  /// runs, tag [S-3].
+  /// @param level_start first node of every level and the end; empty: one level
+  void arrange(const std::vector<int>& level_start) {
+    const auto level = [&](int node) {
+      if (level_start.empty()) return 0;
+      return static_cast<int>(
+          std::upper_bound(level_start.begin() + 1, level_start.end(), node) -
+          (level_start.begin() + 1));
+    };
+    const int levels = level_start.empty() ? 1 : static_cast<int>(level_start.size()) - 1;
+    const auto stage = [&](int b) {
+      int highest = 0;
+      for (int c = 0; c < Columns; ++c)
+        for (int lane = 0; lane < batches_[b].active; ++lane)
+          highest = std::max(highest, level(node(b, c, lane)));
+      return highest;
+    };
+    std::vector<std::vector<int>> members(static_cast<std::size_t>(levels));
+    for (int b = 0; b < size(); ++b) members[stage(b)].push_back(b);
+    runs_.clear();
+    stage_runs_.assign(1, 0);
+    for (const auto& batches : members) {
+      for (std::size_t k = 0; k < batches.size(); ++k) {
+        const int b = batches[k];
+        if (k == 0 || b != batches[k - 1] + 1 || !continues(b)) runs_.push_back(new_run(b));
+        ++runs_.back().batches;
+        runs_.back().tuples += batches_[b].active;
+      }
+      stage_runs_.push_back(static_cast<int>(runs_.size()));
+    }
+  }
+
+  [[nodiscard]] int stages() const { return static_cast<int>(stage_runs_.size()) - 1; }
+  [[nodiscard]] int first_run(int stage) const { return stage_runs_[stage]; }
+  [[nodiscard]] int run_count() const { return static_cast<int>(runs_.size()); }
+  [[nodiscard]] const Run& run(int r) const { return runs_[r]; }
 
   [[nodiscard]] int size() const { return static_cast<int>(batches_.size()); }
   [[nodiscard]] const Batch& operator[](int b) const { return batches_[b]; }
@@ -86,15 +161,9 @@ class IndexBatches {
     return {T::load(x), T::load(y), T::load(z)};
   }
 
-  /// a[node] -= f, lane after lane in the order of the tuples. Idle lanes must hold zeros when the
-  /// batch is contiguous.
+  /// a[node] -= f of a gathered batch, lane after lane in the order of the tuples.
   CROSSBEAM_INLINE void subtract(NodeVectors<R>& a, const Batch& batch, int column,
                                  const Vec3<T>& f) const {
-    if (batch.gather_row < 0) {
-      const int n = batch.first[column];
-      store(a, n, load<T>(a, n) - f);
-      return;
-    }
     const int* n = row(batch, column);
     for (int l = 0; l < batch.active; ++l) {
       a.x[n[l]] -= f.x[l];
@@ -113,8 +182,116 @@ class IndexBatches {
     return table_.data() + (static_cast<std::size_t>(batch.gather_row) * Columns + column) * lanes;
   }
 
+  /// Whether batch b goes on where the last run ends.
+  [[nodiscard]] bool continues(int b) const {
+    const Run& run = runs_.back();
+    const Batch &last = batches_[b - 1], &batch = batches_[b];
+    if ((run.batches + 1) * lanes > run_capacity || run.contiguous != (batch.gather_row < 0))
+      return false;
+    if (!run.contiguous) return true;
+    if (last.active < lanes) return false;
+    for (int c = 0; c < Columns; ++c)
+      if (batch.first[c] != last.first[c] + lanes) return false;
+    return true;
+  }
+
+  [[nodiscard]] Run new_run(int b) const {
+    Run run;
+    run.first_batch = b;
+    run.contiguous = batches_[b].gather_row < 0;
+    const auto& first = batches_[b].first;
+    std::iota(run.column.begin(), run.column.end(), std::uint8_t(0));
+    std::stable_sort(run.column.begin(), run.column.end(),
+                     [&](int p, int q) { return first[p] < first[q]; });
+    int base = 0;
+    for (int k = 0; k < Columns; ++k) {
+      const int node = first[run.column[k]];
+      if (k == 0 || node - base >= reach) {
+        base = node;
+        ++run.lines;
+      }
+      run.shift[k] = static_cast<std::uint8_t>(node - base);
+      run.line_end[run.lines - 1] = static_cast<std::uint8_t>(k + 1);
+    }
+    return run;
+  }
+
   std::vector<Batch> batches_;
   std::vector<int> table_;
+  std::vector<Run> runs_;
+  std::vector<int> stage_runs_;  // first run of every stage, and their count
+};
+
+/// Forces of one contiguous run, column by column, until the nodes get them: a node that is a corner
+/// of several tuples is then read and written once, and no load overtakes a store that it overlaps.
+template <int Columns, class T>
+class RunForces {
+ public:
+  using R = real_t<T>;
+  using Run = typename IndexBatches<Columns, T>::Run;
+  static constexpr int lanes = lanes_v<T>;
+
+  RunForces() {
+    const T zero(R(0));
+    for (auto& column : force_)
+      for (auto& component : column)
+        for (int i = 0; i < front; i += lanes) zero.store(component + i);
+  }
+
+  /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
+  CROSSBEAM_INLINE void put(int column, int tuple, const Vec3<T>& f) {
+    f.x.store(force_[column][0] + front + tuple);
+    f.y.store(force_[column][1] + front + tuple);
+    f.z.store(force_[column][2] + front + tuple);
+  }
+
+  /// a[node] -= the forces put since the last time.
+  void subtract_from(NodeVectors<R>& a, const Run& run, const std::array<int, Columns>& first) {
+    const int end = (run.tuples + lanes - 1) / lanes * lanes;
+    const T zero(R(0));
+    for (auto& column : force_)
+      for (auto& component : column)
+        for (int i = 0; i < back; i += lanes) zero.store(component + front + end + i);
+    int k = 0;
+    for (int line = 0; line < run.lines; ++line) {
+      const int begin = k;
+      k = run.line_end[line];
+      const int base = first[run.column[begin]], count = run.tuples + run.shift[k - 1];
+      R* const out[3] = {a.x.data() + base, a.y.data() + base, a.z.data() + base};
+      switch (k - begin) {
+        case 1: line_of<1>(out, run, begin, count, 1); break;
+        case 2: line_of<2>(out, run, begin, count, 2); break;
+        case 3: line_of<3>(out, run, begin, count, 3); break;
+        default: line_of<0>(out, run, begin, count, k - begin);
+      }
+    }
+  }
+
+ private:
+  static constexpr int reach = IndexBatches<Columns, T>::reach;
+  // Loads reach up to `reach` numbers before the first and a pack beyond the last.
+  static constexpr int front = std::max(reach, lanes), back = std::max(reach, lanes) + lanes;
+  static constexpr int size = front + IndexBatches<Columns, T>::run_capacity + back;
+
+  /// @tparam Count columns of the line, or 0: `columns` of them
+  template <int Count>
+  CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
+                                int columns) const {
+    for (int component = 0; component < 3; ++component) {
+      const R* from[Columns];
+      const int many = Count > 0 ? Count : columns;
+      for (int k = 0; k < many; ++k)
+        from[k] = force_[run.column[begin + k]][component] + front - run.shift[begin + k];
+      R* const to = out[component];
+      for (int i = 0; i < count; i += lanes) {
+        T sum = T::load(from[0] + i);
+        for (int k = 1; k < many; ++k) sum = sum + T::load(from[k] + i);
+        (T::load(to + i) - sum).store(to + i);
+      }
+    }
+  }
+
+  alignas(64) R force_[Columns][3][size];
 };
 
 /// Constants of the tuples in the order of the lanes: component c of batch b is one pack.
@@ -124,8 +301,30 @@ class LaneArray {
   using R = real_t<T>;
   LaneArray() = default;
   LaneArray(int batches, int components)
-      : components_(components),
-        data_(static_cast<std::size_t>(batches) * components * lanes_v<T>) {}
+      : batches_(batches),
+        components_(components),
+        stride_(static_cast<std::size_t>(components) * lanes_v<T>),
+        data_(static_cast<std::size_t>(batches) * stride_) {}
+
+  /// Keeps one tuple's constants where all agree but for the rounding of the mesh's coordinates:
+  /// a regular mesh then streams no constants, tag [S-2].
+  /// @param scale size that a component's differences are compared with
+  /// @param active lanes of each batch that count
+  template <class Scale, class Active>
+  void collapse_if_uniform(const Scale& scale, const Active& active) {
+    if (batches_ == 0) return;
+    const R tolerance = std::max(R(1e-11), 2 * std::numeric_limits<R>::epsilon());
+    for (int b = 0; b < batches_; ++b)
+      for (int c = 0; c < components_; ++c)
+        for (int l = 0; l < active(b); ++l)
+          if (!(std::abs(at(b, c, l) - at(0, c, 0)) <= tolerance * scale(c))) return;
+    for (int c = 0; c < components_; ++c)
+      for (int l = 0; l < lanes_v<T>; ++l) at(0, c, l) = at(0, c, 0);
+    data_.resize(stride_);
+    data_.shrink_to_fit();
+    stride_ = 0;
+  }
+  [[nodiscard]] bool is_uniform() const { return stride_ == 0; }
 
   CROSSBEAM_INLINE T load(int batch, int component) const {
     return T::load(data_.data() + offset(batch, component));
@@ -137,9 +336,10 @@ class LaneArray {
 
  private:
   [[nodiscard]] CROSSBEAM_INLINE std::size_t offset(int batch, int component) const {
-    return (static_cast<std::size_t>(batch) * components_ + component) * lanes_v<T>;
+    return static_cast<std::size_t>(batch) * stride_ + static_cast<std::size_t>(component) * lanes_v<T>;
   }
-  int components_ = 0;
+  int batches_ = 0, components_ = 0;
+  std::size_t stride_ = 0;  // numbers of one batch; 0 where one batch serves all
   AlignedArray<R> data_;
 };
 

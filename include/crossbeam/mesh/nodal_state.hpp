@@ -23,7 +23,9 @@ struct NodalState {
   int node_count = 0;
   NodeVectors<R> x;        ///< positions x_n [mm]
   NodeVectors<R> v;        ///< velocities v_{n-1/2} [mm/ms]
-  NodeVectors<R> v_centre; ///< velocities v_{n-1} = (v_{n-3/2} + v_{n-1/2})/2 [mm/ms]
+  /// Velocities predicted for t_n from v_{n-1/2} and the last acceleration, of second order,
+  /// 2 v_{n-1/2} - v_{n-1}, tag [D-2] [mm/ms]
+  NodeVectors<R> v_predicted;
   NodeVectors<R> f;        ///< forces f_n [kN]
   NodeVectors<R> free;     ///< 1 where a component may move, 0 where it is fixed
   AlignedArray<R> mass;    ///< [kg]; 0 in the padding
@@ -39,7 +41,7 @@ struct NodalState {
       : node_count(mesh.node_count),
         x(node_count),
         v(node_count),
-        v_centre(node_count),
+        v_predicted(node_count),
         f(node_count),
         free(node_count),
         mass(padded(node_count)),
@@ -72,12 +74,6 @@ struct NodalState {
       if (c.fix_y) free.y[c.node] = R(0);
       if (c.fix_z) free.z[c.node] = R(0);
     }
-  }
-
-  /// Velocity predicted for t_n from v_{n-1/2} and the last acceleration, of second order, tag [D-2].
-  template <class T>
-  CROSSBEAM_INLINE Vec3<T> predicted_velocity(const Vec3<T>& half, const Vec3<T>& centre) const {
-    return T(R(2)) * half - centre;
   }
 };
 
