@@ -31,7 +31,9 @@ struct ShearInput {
 struct FabricInput {
   CellFormulation formulation = CellFormulation::energy;
   CellParameters<double> cell{};
-  int cell_sweeps = 3;  ///< Newton sweeps of the energy cell at every point and step; 1..20
+  /// Newton sweeps of the energy cell at every point and step, 1..20; 0: the heights are followed from
+  /// step to step by one residual evaluation
+  int cell_sweeps = 0;
   ShearInput shear{};
   double warp_bending_stiffness = 1.4e-3;  ///< D1 [kN mm]; 0 switches bending off
   double weft_bending_stiffness = 1.4e-3;  ///< D2 [kN mm]

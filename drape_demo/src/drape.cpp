@@ -140,9 +140,9 @@ class QuarterDrape {
           what = std::string(i == 0 ? "warp" : "weft") + " stretch " + detail::to_text(s.stretch[i]) +
                  ", admissible 0.2 to 1.5";
       if (!(s.cell_correction < 1e-3 * longest))
-        what = "the cell is not converged: last correction " + detail::to_text(s.cell_correction) +
-               " mm after " + std::to_string(case_.fabric.cell_sweeps) + " sweeps, admissible below " +
-               detail::to_text(1e-3 * longest);
+        what = "the cell is not in equilibrium: its heights are off by " +
+               detail::to_text(s.cell_correction) + " mm, admissible below " +
+               detail::to_text(1e-3 * longest) + "; more cell_sweeps or a smaller step_factor help";
       if (what.empty()) continue;
       const auto [x, y] = material_centre(static_cast<int>(e));
       throw RunError("stroke " + detail::to_text(stroke) + " mm, element " + std::to_string(e) +

@@ -100,7 +100,7 @@ void visit_fields(Case& c, Visitor& v) {
 
   v.enter("fabric");
   v.choice("formulation", c.fabric.formulation);
-  v.integer("cell_sweeps", c.fabric.cell_sweeps, "-", from_to(1, 20));
+  v.integer("cell_sweeps", c.fabric.cell_sweeps, "-", from_to(0, 20));
   v.real("warp_bending_stiffness", c.fabric.warp_bending_stiffness, "kN mm", from_to(0, 1));
   v.real("weft_bending_stiffness", c.fabric.weft_bending_stiffness, "kN mm", from_to(0, 1));
   v.real("areal_mass", c.fabric.areal_mass, "kg/mm^2", above_to(0, 1e-3));

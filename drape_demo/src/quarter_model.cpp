@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 namespace crossbeam::drape {
@@ -79,8 +80,17 @@ void QuarterModel<R>::add_membrane_with(const Cell& cell) {
 template <class R>
 template <class Cell, class Shear>
 void QuarterModel<R>::add_membrane_with(const Cell& cell, const Shear& shear) {
-  const WovenMembrane<Cell, Shear> law(cell, shear, FibreAngle<R>::right(), YarnWidth::corrected,
-                                       SolverControl::fixed(case_.fabric.cell_sweeps));
+  if constexpr (std::is_same_v<Cell, CrossedBeamCell<R>>)
+    if (case_.fabric.cell_sweeps == 0)
+      return add_membrane_of(WovenMembrane<Cell, Shear, CellPrice::followed>(cell, shear));
+  add_membrane_of(WovenMembrane<Cell, Shear>(cell, shear, FibreAngle<R>::right(),
+                                               YarnWidth::corrected,
+                                               SolverControl{case_.fabric.cell_sweeps}));
+}
+
+template <class R>
+template <class Law>
+void QuarterModel<R>::add_membrane_of(const Law& law) {
   const MembraneOptions options{case_.blank.hourglass_stiffness,
                                 case_.integration.bulk_viscosity};
   if (case_.blank.gauss_points == 1)

@@ -50,6 +50,8 @@ class QuarterModel {
   void add_membrane_with(const Cell& cell);
   template <class Cell, class Shear>
   void add_membrane_with(const Cell& cell, const Shear& shear);
+  template <class Law>
+  void add_membrane_of(const Law& law);
   template <class Element, class Law>
   void add_block(const Law& law, const MembraneOptions& options);
   void add_tools();

@@ -62,7 +62,7 @@ struct OutOfRange {
 const std::vector<OutOfRange>& out_of_range() {
   static const std::vector<OutOfRange> cases{
       {"fabric.formulation", "'linear'", "", "energy or second_order"},
-      {"fabric.cell_sweeps", "0", "", ">= 1"},
+      {"fabric.cell_sweeps", "-1", "", ">= 0"},
       {"fabric.cell_sweeps", "21", "", "<= 20"},
       {"fabric.warp_bending_stiffness", "-1e-9", "kN mm", ">= 0"},
       {"fabric.warp_bending_stiffness", "1.5", "kN mm", "<= 1"},

@@ -47,6 +47,13 @@ struct YarnForces {
   T F1, F2;
 };
 
+/// What following a cell needs of one yarn at its last height.
+template <class T>
+struct FollowedYarn {
+  T g, D;     ///< vertical force and its derivative by the height
+  T F, k_Lh;  ///< horizontal force and its derivative by the height
+};
+
 /// Increments of the two crimp heights that a cell remembers from one time step to the next [mm].
 template <class T>
 struct CrimpHeights {
@@ -242,32 +249,46 @@ class CrossedBeamCell {
     }
   }
 
-  /// One residual evaluation at given heights: forces linearised to the heights of the equilibrium,
-  /// which replace the given ones, tag [C-14]. Its error is of second order in the correction.
-  /// @param heights those of a nearby strain; at first those of solve()
+  /// @name Following the heights from one time step to the next, tag [C-14]: one residual evaluation
+  /// at the given heights, forces linearised to the heights of the equilibrium, which replace the
+  /// given ones. The error is of second order in the correction. The given heights are those of a
+  /// nearby strain, at first those of solve(). Two parts, so that each makes a short loop.
+  /// @{
   template <class T>
-  CROSSBEAM_INLINE YarnForces<T> follow(const T& u1, const T& u2, CrimpHeights<T>& heights) const
+  CROSSBEAM_INLINE static FollowedYarn<T> evaluate_yarn(const Yarn& yarn, const T& u, const T& w) {
+    const YarnState<T> y(yarn, u, w);
+    return {y.vertical_force(yarn), maximum(y.k_hh(yarn), T(yarn.follow_floor)),
+            y.horizontal_force(yarn), y.k_Lh(yarn)};
+  }
+  template <class T>
+  CROSSBEAM_INLINE YarnForces<T> follow(const T& u1, const T& u2, const FollowedYarn<T>& y1,
+                                        const FollowedYarn<T>& y2,
+                                        CrimpHeights<T>& heights) const
     requires(ContactKind == Contact::unilateral && ScalarTraits<T>::derivative_order == 0)
   {
-    const YarnState<T> y1(yarn1_, u1, heights.w1), y2(yarn2_, u2, heights.w2);
-    const T g1 = y1.vertical_force(yarn1_), g2 = y2.vertical_force(yarn2_);
-    const T D1 = maximum(y1.k_hh(yarn1_), T(yarn1_.follow_floor));
-    const T D2 = maximum(y2.k_hh(yarn2_), T(yarn2_.follow_floor));
-    const T D12 = D1 * D2, k3 = T(k3_), closed = D12 + k3 * (D1 + D2);
+    const T D12 = y1.D * y2.D, k3 = T(k3_), closed = D12 + k3 * (y1.D + y2.D);
     const T both = T(1) / (closed * D12);  // one division for 1/closed and 1/D12
-    const T q = maximum(k3 * ((g1 - heights.w1 * D1) * D2 + (g2 - heights.w2 * D2) * D1) *
-                            (both * D12), T(0));
+    const T q = maximum(k3 * ((y1.g - heights.w1 * y1.D) * y2.D +
+                              (y2.g - heights.w2 * y2.D) * y1.D) * (both * D12), T(0));
     const T r = both * closed, most = T(follow_limit_);
-    const T dw1 = maximum(minimum((q - g1) * (D2 * r), most), -most);
-    const T dw2 = maximum(minimum((q - g2) * (D1 * r), most), -most);
+    const T dw1 = maximum(minimum((q - y1.g) * (y2.D * r), most), -most);
+    const T dw2 = maximum(minimum((q - y2.g) * (y1.D * r), most), -most);
     heights.w1 = heights.w1 + dw1;
     heights.w2 = heights.w2 + dw2;
-    YarnForces<T> out{y1.horizontal_force(yarn1_) + y1.k_Lh(yarn1_) * dw1,
-                      y2.horizontal_force(yarn2_) + y2.k_Lh(yarn2_) * dw2};
+    YarnForces<T> out{y1.F + y1.k_Lh * dw1, y2.F + y2.k_Lh * dw2};
     if (!has_bending_) slack_without_bending(u1, u2, heights, out);
     add_residual(u1, u2, out.F1, out.F2);
     return out;
   }
+  /// Both parts at once.
+  template <class T>
+  CROSSBEAM_INLINE YarnForces<T> follow(const T& u1, const T& u2, CrimpHeights<T>& heights) const
+    requires(ContactKind == Contact::unilateral && ScalarTraits<T>::derivative_order == 0)
+  {
+    return follow(u1, u2, evaluate_yarn(yarn1_, u1, heights.w1),
+                  evaluate_yarn(yarn2_, u2, heights.w2), heights);
+  }
+  /// @}
 
   /// Stored energy of the cell at a solution, tag [C-3].
   template <class T>

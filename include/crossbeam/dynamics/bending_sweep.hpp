@@ -245,6 +245,12 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
             return largest;
           },
           [this](int b) { return batches_[b].active; });
+      for (int k = 0; k < used_ && batches_.size() > 0; ++k) {
+        const R w = constants_.at(0, k, 0);
+        weights_[0][k] = sign_x_[k] * w;
+        weights_[1][k] = sign_y_[k] * w;
+        weights_[2][k] = w;
+      }
     }
 
     [[nodiscard]] int stages() const { return batches_.stages(); }
@@ -301,28 +307,41 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     CROSSBEAM_INLINE Vec3<T> curvature(const NodalState<R>& state, int b) const {
       const T zero(R(0));
       Vec3<T> kappa{zero, zero, zero};
-      for (int k = 0; k < used_; ++k)
+      const int columns = Columns == 3 ? 3 : used_;  // unused columns have no weight
+      for (int k = 0; k < columns; ++k)
         kappa = kappa + constants_.load(b, k) *
                             signed_copy<Mirrored>(batches_.gather(state.x, batches_[b], k), k);
       return kappa;
     }
 
     template <bool Mirrored>
+    CROSSBEAM_INLINE Vec3<T> moment(const NodalState<R>& state, int b) const {
+      Vec3<T> m = constants_.load(b, Columns) * curvature<Mirrored>(state, b);
+      if (batches_[b].active < lanes) {
+        const auto active = batches_.active(batches_[b]);
+        const T zero(R(0));
+        m = {select(active, m.x, zero), select(active, m.y, zero), select(active, m.z, zero)};
+      }
+      return m;
+    }
+
+    template <bool Mirrored>
     void sweep(NodalState<R>& state, int first_run, int last_run) const {
       RunForces<Columns, T> forces;
-      const T zero(R(0));
+      RunVectors<Columns, T> moments;
       for (int r = first_run; r < last_run; ++r) {
         const auto& run = batches_.run(r);
+        if (run.contiguous && constants_.is_uniform()) {
+          for (int i = 0; i < run.batches; ++i)
+            moments.put(i * lanes, moment<Mirrored>(state, run.first_batch + i));
+          moments.subtract_from(state.f, run, batches_[run.first_batch].first, weights_);
+          continue;
+        }
         for (int i = 0; i < run.batches; ++i) {
           const int b = run.first_batch + i;
-          Vec3<T> moment = constants_.load(b, Columns) * curvature<Mirrored>(state, b);
-          if (batches_[b].active < lanes) {
-            const auto active = batches_.active(batches_[b]);
-            moment = {select(active, moment.x, zero), select(active, moment.y, zero),
-                      select(active, moment.z, zero)};
-          }
+          const Vec3<T> m = moment<Mirrored>(state, b);
           for (int k = 0; k < used_; ++k) {
-            const Vec3<T> f = constants_.load(b, k) * signed_copy<Mirrored>(moment, k);
+            const Vec3<T> f = constants_.load(b, k) * signed_copy<Mirrored>(m, k);
             if (run.contiguous)
               forces.put(k, i * lanes, f);
             else
@@ -337,6 +356,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     int used_ = 0;
     bool mirrored_ = false;
     std::array<R, Columns> sign_x_{}, sign_y_{};
+    std::array<R, Columns> weights_[3]{};  // with their signs, of uniform stencils
     IndexBatches<Columns, T> batches_;
     LaneArray<T> constants_;
   };

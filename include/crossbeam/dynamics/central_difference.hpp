@@ -44,6 +44,11 @@ class CentralDifference {
     level_start_ = model_.arrange(least_level);
     travel_.assign(level_start_.size() - 1, 0.0);
     tool_travel_ = 0;
+    is_constrained_.assign(static_cast<std::size_t>(model_.padded_count() / lanes), 0);
+    for (int n = 0; n < model_.state.node_count; ++n) {
+      const Vec3<R> free = model_.state.free.get(n);
+      if (!(free.x == R(1) && free.y == R(1) && free.z == R(1))) is_constrained_[n / lanes] = 1;
+    }
   }
 
   /// One step: forces at t_n, velocities to t_{n+1/2}, positions to t_{n+1}. Level by level, so that
@@ -133,8 +138,8 @@ class CentralDifference {
   [[nodiscard]] int levels() const { return static_cast<int>(travel_.size()); }
 
   void add_internal_forces(int level) {
-    model_.clear_forces(level_start_[level], level_start_[level + 1]);
-    if (level == 0) model_.clear_forces(level_start_.back(), level_start_.back() + array_padding);
+    const bool last = level + 1 == levels();
+    model_.clear_forces(level_start_[level], last ? model_.padded_count() : level_start_[level + 1]);
     for (const auto& b : model_.blocks) b->add_forces(model_.state, dt_, level);
   }
   void add_contact_forces(int level) {
@@ -221,7 +226,8 @@ class CentralDifference {
     T fastest(R(0)), sum(R(0));
     for (int n = level_start_[level]; n < level_start_[level + 1]; n += lanes) {
       const Vec3<T> before = load<T>(model_.state.v, n);
-      const Vec3<T> v = constrained(n, keep * before + push * acceleration(n));
+      Vec3<T> v = keep * before + push * acceleration(n);
+      if (is_constrained_[n / lanes]) v = constrained(n, v);
       store(model_.state.v, n, v);
       store(model_.state.v_predicted, n, three_halves * v - half * before);
       store(model_.state.x, n, load<T>(model_.state.x, n) + dt * v);
@@ -283,6 +289,7 @@ class CentralDifference {
 
   Model<R> model_;
   std::vector<int> level_start_;
+  std::vector<char> is_constrained_;  // packs with a node that is held
   std::vector<double> travel_;  // bound of how far any node of a level has moved [mm]
   double dt_ = 0, time_ = 0, tool_travel_ = 0, speed_limit_ = 1e6;
   double mass_damping_work_ = 0, mass_damping_power_ = 0, initial_ = 0;

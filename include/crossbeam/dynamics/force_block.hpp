@@ -28,7 +28,8 @@ struct ElementSample {
   double contact_force = 0;                     ///< of the cell, pressure positive [kN]
   bool slack = false;                           ///< the yarns do not touch
   bool fallback = false;                        ///< second-order cell answered by the energy cell
-  double cell_correction = 0;                   ///< last Newton correction of the cell [mm]
+  double cell_correction = 0;                   ///< last Newton correction of the cell, or how far
+                                                ///< its followed heights are off [mm]
   Vec3<double> warp{}, weft{};                  ///< current unit directions
 };
 

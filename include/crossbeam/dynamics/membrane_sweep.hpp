@@ -45,9 +45,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
 
   /// Whether the law keeps the heights of its cells from step to step.
   static constexpr bool follows =
-      requires(const Law& law, CrimpHeights<T>& h, T& m) {
+      requires {
         requires Law::follows_heights;
-        law.follow(m, m, m, m, h, m, m);
+        typename Law::template CellSolution<T>;
       };
 
   /// A law of one's own need not have a cell; then there is nothing of a cell to sample.
@@ -185,6 +185,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
             s.tension[i] += share * static_cast<double>(tension(i)[l]);
           }
           if constexpr (has_cell) sample_cell(at, l, s);
+          if constexpr (follows)
+            if (heights_known_) sample_heights(at, b, p, l, s);
           const auto unit = [&](const Vec3<T>& f, double length) {
             return (share / length) * Vec3<double>{static_cast<double>(f.x[l]),
                                                    static_cast<double>(f.y[l]),
@@ -217,6 +219,17 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
           std::max(s.cell_correction, static_cast<double>(at.cell.last_correction[lane]));
     else
       s.fallback = s.fallback || at.cell.fallback[lane] > R(0);
+  }
+
+  /// How far the heights that the next step will find are from the equilibrium.
+  template <class State>
+  void sample_heights(const State& at, int b, int p, int lane, ElementSample& s) const {
+    CrimpHeights<T> heights{heights_.load(b, 2 * p), heights_.load(b, 2 * p + 1)};
+    law_.cell().follow(at.u1, at.u2, heights);
+    const T off1 = magnitude(heights.w1 - at.cell.forces.w1);
+    const T off2 = magnitude(heights.w2 - at.cell.forces.w2);
+    s.cell_correction =
+        std::max({s.cell_correction, static_cast<double>(off1[lane]), static_cast<double>(off2[lane])});
   }
 
   static Vec3<double> lane_of(const Vec3<T>& v, int lane) {
@@ -293,6 +306,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     Vectors hourglass;        ///< its force
     Vectors f1, f2;           ///< of the present point
     Buffer b11, b22, b12, inv1, inv2, u1, u2, m11, m22, m12;
+    struct {
+      Buffer g, D, F, k_Lh;
+    } yarn[2];
     RunForces<corners, T> corner;
   };
 
@@ -392,12 +408,31 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         work.inv1.store(i, inv1);
         work.inv2.store(i, inv2);
       }
+      const auto& cell = law.cell();
+      for (int y = 0; y < 2; ++y) {
+        const auto& yarn = y == 0 ? cell.warp() : cell.weft();
+        const auto& u = y == 0 ? work.u1 : work.u2;
+        auto& out = work.yarn[y];
+        for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+          const auto at = cell.evaluate_yarn(yarn, u.load(i),
+                                             heights_.load(run.first_batch + k, 2 * p + y));
+          out.g.store(i, at.g);
+          out.D.store(i, at.D);
+          out.F.store(i, at.F);
+          out.k_Lh.store(i, at.k_Lh);
+        }
+      }
+      const auto yarn = [&](int y, int i) {
+        const auto& from = work.yarn[y];
+        return FollowedYarn<T>{
+            from.g.load(i), from.D.load(i), from.F.load(i), from.k_Lh.load(i)};
+      };
       for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
         const int b = run.first_batch + k;
         CrimpHeights<T> heights{heights_.load(b, 2 * p), heights_.load(b, 2 * p + 1)};
         T m11, m22;
-        law.follow(work.u1.load(i), work.u2.load(i), work.inv1.load(i), work.inv2.load(i), heights,
-                   m11, m22);
+        law.follow(work.u1.load(i), work.u2.load(i), work.inv1.load(i), work.inv2.load(i),
+                   yarn(0, i), yarn(1, i), heights, m11, m22);
         heights_.store(b, 2 * p, heights.w1);
         heights_.store(b, 2 * p + 1, heights.w2);
         work.m11.store(i, m11);

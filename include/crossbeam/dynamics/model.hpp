@@ -40,7 +40,10 @@ struct Model {
     for (const auto& t : tools) t->add_forces(state, dt, travel);
   }
 
-  void clear_forces() { clear_forces(0, static_cast<int>(state.f.x.size())); }
+  /// Nodes with their padding.
+  [[nodiscard]] int padded_count() const { return static_cast<int>(state.f.x.size()); }
+
+  void clear_forces() { clear_forces(0, padded_count()); }
   void clear_forces(int first, int last) {
     for (auto* component : {&state.f.x, &state.f.y, &state.f.z})
       std::fill(component->begin() + first, component->begin() + last, R(0));
@@ -49,9 +52,9 @@ struct Model {
   /// Cuts the nodes into levels wide enough that no piece of work touches more than two, and sorts
   /// the blocks' work by them, tag [S-3].
   /// @param least nodes of a level, at least
-  /// @return first node of every level and the end, all of them multiples of the array padding
+  /// @return first node of every level, multiples of the array padding, and the node count
   [[nodiscard]] std::vector<int> arrange(int least) {
-    const int end = (state.node_count + array_padding - 1) / array_padding * array_padding;
+    const int end = state.node_count;
     int width = std::max(least, array_padding);
     for (const auto& b : blocks) width = std::max(width, std::min(b->bandwidth(), end));
     width = (width + array_padding - 1) / array_padding * array_padding;

@@ -97,14 +97,14 @@ class WovenMembrane {
     inv1 = inv.first;
     inv2 = inv.second;
   }
-  /// The yarns' share of the stress.
-  /// @param heights those of the last call, which this one moves on
+  /// The yarns' share of the stress, from the cell's two yarns at the heights of the last call.
+  /// @param heights moved on to the equilibrium
   template <class T>
   CROSSBEAM_INLINE void follow(const T& u1, const T& u2, const T& inv1, const T& inv2,
-                               CrimpHeights<T>& heights, T& m11, T& m22) const
-    requires requires(const Cell& c, T u) { c.follow(u, u, heights); }
-  {
-    const YarnForces<T> F = cell_.follow(u1, u2, heights);
+                               const FollowedYarn<T>& y1,
+                               const FollowedYarn<T>& y2,
+                               CrimpHeights<T>& heights, T& m11, T& m22) const {
+    const YarnForces<T> F = cell_.follow(u1, u2, y1, y2, heights);
     m11 = F.F1 * T(width1_) * inv1;
     m22 = F.F2 * T(width2_) * inv2;
   }

@@ -294,6 +294,77 @@ class RunForces {
   alignas(64) R force_[Columns][3][size];
 };
 
+/// The same where every tuple has one vector, and column k of a tuple gets it times a constant of its
+/// own: weight[k], with the sign of each component.
+template <int Columns, class T>
+class RunVectors {
+ public:
+  using R = real_t<T>;
+  using Run = typename IndexBatches<Columns, T>::Run;
+  static constexpr int lanes = lanes_v<T>;
+
+  RunVectors() {
+    const T zero(R(0));
+    for (auto& component : vector_)
+      for (int i = 0; i < front; i += lanes) zero.store(component + i);
+  }
+
+  /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
+  CROSSBEAM_INLINE void put(int tuple, const Vec3<T>& v) {
+    v.x.store(vector_[0] + front + tuple);
+    v.y.store(vector_[1] + front + tuple);
+    v.z.store(vector_[2] + front + tuple);
+  }
+
+  /// a[node of column k] -= weight[component][k] times the vector.
+  void subtract_from(NodeVectors<R>& a, const Run& run, const std::array<int, Columns>& first,
+                     const std::array<R, Columns> (&weight)[3]) {
+    const T zero(R(0));
+    const int end = (run.tuples + lanes - 1) / lanes * lanes;
+    for (auto& component : vector_)
+      for (int i = 0; i < back; i += lanes) zero.store(component + front + end + i);
+    int k = 0;
+    for (int line = 0; line < run.lines; ++line) {
+      const int begin = k;
+      k = run.line_end[line];
+      const int base = first[run.column[begin]], count = run.tuples + run.shift[k - 1];
+      R* const out[3] = {a.x.data() + base, a.y.data() + base, a.z.data() + base};
+      switch (k - begin) {
+        case 1: line_of<1>(out, run, begin, count, 1, weight); break;
+        case 3: line_of<3>(out, run, begin, count, 3, weight); break;
+        default: line_of<0>(out, run, begin, count, k - begin, weight);
+      }
+    }
+  }
+
+ private:
+  static constexpr int reach = IndexBatches<Columns, T>::reach;
+  static constexpr int front = std::max(reach, lanes), back = std::max(reach, lanes) + lanes;
+  static constexpr int size = front + IndexBatches<Columns, T>::run_capacity + back;
+
+  template <int Count>
+  CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
+                                int columns, const std::array<R, Columns> (&weight)[3]) const {
+    const int many = Count > 0 ? Count : columns;
+    for (int component = 0; component < 3; ++component) {
+      const R* from[Columns];
+      T w[Columns];
+      for (int k = 0; k < many; ++k) {
+        from[k] = vector_[component] + front - run.shift[begin + k];
+        w[k] = T(weight[component][run.column[begin + k]]);
+      }
+      R* const to = out[component];
+      for (int i = 0; i < count; i += lanes) {
+        T sum = w[0] * T::load(from[0] + i);
+        for (int k = 1; k < many; ++k) sum = sum + w[k] * T::load(from[k] + i);
+        (T::load(to + i) - sum).store(to + i);
+      }
+    }
+  }
+
+  alignas(64) R vector_[3][size];
+};
+
 /// Constants of the tuples in the order of the lanes: component c of batch b is one pack.
 template <class T>
 class LaneArray {
