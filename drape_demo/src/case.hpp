@@ -75,6 +75,7 @@ struct ContactInput {
 
 struct IntegrationInput {
   double step_factor = 0.9;      ///< of the proven critical step [-]
+  double axial_scaling = 1;      ///< s: yarns s times softer along, as stiff in bending; >= 1 [-]
   double mass_damping = 0.02;    ///< [1/ms]
   double bulk_viscosity = 0.06;  ///< linear, on the fibre stretch rates [-]
   Precision precision = Precision::double_;

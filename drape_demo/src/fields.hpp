@@ -171,6 +171,7 @@ void visit_fields(Case& c, Visitor& v) {
 
   v.enter("integration");
   v.real("step_factor", c.integration.step_factor, "-", above_to(0, 2));
+  v.real("axial_scaling", c.integration.axial_scaling, "-", from_to(1, 100));
   v.real("mass_damping", c.integration.mass_damping, "1/ms", from_to(0, 10));
   v.real("bulk_viscosity", c.integration.bulk_viscosity, "-", from_to(0, 1));
   v.choice("precision", c.integration.precision);

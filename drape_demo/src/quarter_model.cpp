@@ -51,11 +51,15 @@ NodalState<R> QuarterModel<R>::initial_state() const {
 
 template <class R>
 void QuarterModel<R>::add_membrane() {
-  const FabricInput& fabric = case_.fabric;
-  if (fabric.formulation == CellFormulation::energy)
-    add_membrane_with(CrossedBeamCell<R>(fabric.cell.template cast<R>()));
+  CellParameters<double> cell = case_.fabric.cell;
+  for (YarnParameters<double>* yarn : {&cell.warp, &cell.weft}) {  // E I stays
+    yarn->youngs_modulus /= case_.integration.axial_scaling;
+    yarn->second_moment_of_area *= case_.integration.axial_scaling;
+  }
+  if (case_.fabric.formulation == CellFormulation::energy)
+    add_membrane_with(CrossedBeamCell<R>(cell.cast<R>()));
   else
-    add_membrane_with(SecondOrderCell<R>(fabric.cell.template cast<R>()));
+    add_membrane_with(SecondOrderCell<R>(cell.cast<R>()));
 }
 
 template <class R>

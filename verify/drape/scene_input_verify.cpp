@@ -136,6 +136,8 @@ const std::vector<OutOfRange>& out_of_range() {
       {"contact.table_spacing", "6.0", "mm", "<= 5"},
       {"integration.step_factor", "0.0", "", "> 0"},
       {"integration.step_factor", "2.1", "", "<= 2"},
+      {"integration.axial_scaling", "0.5", "", ">= 1"},
+      {"integration.axial_scaling", "101.0", "", "<= 100"},
       {"integration.mass_damping", "-0.1", "1/ms", ">= 0"},
       {"integration.mass_damping", "11.0", "1/ms", "<= 10"},
       {"integration.bulk_viscosity", "-0.1", "", ">= 0"},

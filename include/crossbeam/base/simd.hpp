@@ -218,6 +218,21 @@ struct ScalarTraits<Pack<S, N>> {
   static constexpr int derivative_order = 0;
 };
 
+/// Integer part, towards zero, of numbers that fit an int: as numbers and as integers.
+template <class S, int N>
+CROSSBEAM_INLINE Pack<S, N> truncate(const Pack<S, N>& x, int (&integers)[N]) {
+  if constexpr (N == 1) {
+    integers[0] = static_cast<int>(x[0]);
+    return Pack<S, N>(integers[0]);
+  } else {
+    // All lanes at once: numbers written one by one and read as a whole would have to wait.
+    using Integers = typename detail::VectorOf<int, N>::type;
+    const Integers i = __builtin_convertvector(x.v, Integers);
+    *reinterpret_cast<typename detail::VectorOf<int, N>::unaligned*>(integers) = i;
+    return __builtin_convertvector(i, typename Pack<S, N>::Vector);
+  }
+}
+
 /// c[k] of every lane = from(lane)[k], k = 0..2. Reads from(lane)[3] too.
 template <class From, class S, int N>
 CROSSBEAM_INLINE void gather_three(const From& from, Pack<S, N> (&c)[3]) {

@@ -213,22 +213,15 @@ class HeightTable {
     t = select(t < zero, zero, t);
     t = select(t > T(R(axis.cells)), T(R(axis.cells)), t);
     Place<T> p;
+    constexpr R half_cell = R(1) / R(2);  // keeps the upper end in the last cell
     // A NaN coordinate looks up cell 0 and comes back as NaN through the weights.
     const auto inside = passive(select(t >= zero, t, zero));
     passive_t<T> base;
     if constexpr (lanes_v<T> == 1) {
-      const int cell = static_cast<int>(inside);
-      p.cell[0] = cell < axis.cells ? cell : axis.cells - 1;
-      base = R(p.cell[0]);
+      p.cell[0] = static_cast<int>(minimum(inside, passive_t<T>(R(axis.cells) - half_cell)));
+      base = passive_t<T>(R(p.cell[0]));
     } else {
-      R in[lanes_v<T>], low[lanes_v<T>];
-      inside.store(in);
-      for (int lane = 0; lane < lanes_v<T>; ++lane) {
-        const int cell = static_cast<int>(in[lane]);
-        p.cell[lane] = cell < axis.cells ? cell : axis.cells - 1;
-        low[lane] = R(p.cell[lane]);
-      }
-      base = passive_t<T>::load(low);
+      base = truncate(minimum(inside, passive_t<T>(R(axis.cells) - half_cell)), p.cell);
     }
     const T v = t - T(base), rest = one - v;
     const T scale = sign * T(axis.per_spacing);

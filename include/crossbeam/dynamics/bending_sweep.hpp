@@ -245,6 +245,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
             return largest;
           },
           [this](int b) { return batches_[b].active; });
+      for (int b = 0; b < batches_.size(); ++b)
+        has_gathered_ = has_gathered_ || batches_[b].gather_row >= 0;
       for (int k = 0; k < used_ && batches_.size() > 0; ++k) {
         const R w = constants_.at(0, k, 0);
         weights_[0][k] = sign_x_[k] * w;
@@ -327,16 +329,27 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
 
     template <bool Mirrored>
     void sweep(NodalState<R>& state, int first_run, int last_run) const {
-      RunForces<Columns, T> forces;
-      RunVectors<Columns, T> moments;
-      for (int r = first_run; r < last_run; ++r) {
-        const auto& run = batches_.run(r);
-        if (run.contiguous && constants_.is_uniform()) {
+      if (constants_.is_uniform()) {
+        RunVectors<Columns, T> moments;
+        for (int r = first_run; r < last_run; ++r) {
+          const auto& run = batches_.run(r);
+          if (!run.contiguous) continue;
           for (int i = 0; i < run.batches; ++i)
             moments.put(i * lanes, moment<Mirrored>(state, run.first_batch + i));
           moments.subtract_from(state.f, run, batches_[run.first_batch].first, weights_);
-          continue;
         }
+      }
+      if (!constants_.is_uniform() || has_gathered_)
+        sweep_general<Mirrored>(state, first_run, last_run);
+    }
+
+    /// With weights of every stencil's own, or nodes all over the place.
+    template <bool Mirrored>
+    void sweep_general(NodalState<R>& state, int first_run, int last_run) const {
+      RunForces<Columns, T> forces;
+      for (int r = first_run; r < last_run; ++r) {
+        const auto& run = batches_.run(r);
+        if (run.contiguous && constants_.is_uniform()) continue;
         for (int i = 0; i < run.batches; ++i) {
           const int b = run.first_batch + i;
           const Vec3<T> m = moment<Mirrored>(state, b);
@@ -354,7 +367,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
 
     int used_ = 0;
-    bool mirrored_ = false;
+    bool mirrored_ = false, has_gathered_ = false;
     std::array<R, Columns> sign_x_{}, sign_y_{};
     std::array<R, Columns> weights_[3]{};  // with their signs, of uniform stencils
     IndexBatches<Columns, T> batches_;
