@@ -27,8 +27,10 @@
 #include "crossbeam/element/triangle.hpp"
 
 #include "crossbeam/mesh/batches.hpp"
+#include "crossbeam/mesh/levels.hpp"
 #include "crossbeam/mesh/mesh.hpp"
 #include "crossbeam/mesh/nodal_state.hpp"
+#include "crossbeam/mesh/numbering.hpp"
 #include "crossbeam/mesh/tangent_entries.hpp"
 
 #include "crossbeam/contact/double_dome.hpp"
