@@ -478,7 +478,7 @@ TEST_CASE("V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's
     }
     contact.add_forces(state, 1, 0);
     struct Answer {
-      Vec3<double> force;
+      Vec3<double> force{};
       double energy;
     };
     return Answer{state.f.get(0), contact.stored_energy() / 4};

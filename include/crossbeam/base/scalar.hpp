@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 /// Kernels must be inlined as a whole: compilers otherwise pass packs through memory.
 #if defined(__GNUC__)
@@ -17,13 +18,11 @@
 #define CROSSBEAM_INLINE inline
 #endif
 
-/// In front of a loop over a few components: unrolled, so that arrays of packs stay in registers.
-#if defined(__clang__)
-#define CROSSBEAM_UNROLL _Pragma("unroll")
-#elif defined(__GNUC__)
-#define CROSSBEAM_UNROLL _Pragma("GCC unroll 4")
+/// The same for lambdas, behind their parameters.
+#if defined(__GNUC__)
+#define CROSSBEAM_INLINE_LAMBDA __attribute__((always_inline))
 #else
-#define CROSSBEAM_UNROLL
+#define CROSSBEAM_INLINE_LAMBDA
 #endif
 
 namespace crossbeam {
@@ -75,6 +74,15 @@ CROSSBEAM_INLINE T square(const T& a) {
   return a * a;
 }
 
+/// body(0), ..., body(N - 1), unrolled: arrays of packs that a loop would index at run time have to live
+/// in memory, these do not. The indices are integral constants.
+template <int N, class Body>
+CROSSBEAM_INLINE void unrolled(const Body& body) {
+  [&]<int... k>(std::integer_sequence<int, k...>) CROSSBEAM_INLINE_LAMBDA {
+    (body(std::integral_constant<int, k>{}), ...);
+  }(std::make_integer_sequence<int, N>{});
+}
+
 /// Rounding unit of the numbers inside T.
 template <class T>
 constexpr real_t<T> epsilon_of() {
@@ -104,7 +112,7 @@ CROSSBEAM_INLINE T per_lane(const T& x, Op op) {
 /// kernels. (Eigen carries the public matrices; inside a SIMD sweep a plain struct optimises better.)
 template <class T>
 struct Vec3 {
-  T x{}, y{}, z{};
+  T x, y, z;
 
   CROSSBEAM_INLINE friend Vec3 operator+(const Vec3& a, const Vec3& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};

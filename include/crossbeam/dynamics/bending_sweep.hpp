@@ -230,17 +230,18 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         tuples.push_back(t);
       }
       batches_ = IndexBatches<Columns, T>(tuples);
-      constants_ = LaneArray<T>(batches_.size(), Columns + 1);
+      constants_ = LaneArray<T>(batches_.size(), Columns);
+      stiffness_ = LaneArray<T>(batches_.size(), 1);
       for (int b = 0; b < batches_.size(); ++b)
         for (int l = 0; l < batches_[b].active; ++l) {  // idle lanes keep a stiffness of zero
           const Stencil& s = stencils[batches_.tuple(b, l)];
           for (int k = 0; k < used_; ++k) constants_.at(b, k, l) = R(s.weight[k]);
-          constants_.at(b, Columns, l) = R(s.stiffness);
+          stiffness_.at(b, 0, l) = R(s.stiffness);
         }
       constants_.collapse_if_uniform(
-          [this](int c) {
-            R largest = c == Columns ? std::abs(constants_.at(0, c, 0)) : R(0);
-            for (int k = 0; c < Columns && k < used_; ++k)
+          [this](int) {
+            R largest(0);
+            for (int k = 0; k < used_; ++k)
               largest = std::max(largest, std::abs(constants_.at(0, k, 0)));
             return largest;
           },
@@ -273,7 +274,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       const T zero(R(0));
       for (int b = 0; b < batches_.size(); ++b) {
         const Vec3<T> kappa = curvature<true>(state, b);
-        const T energy = constants_.load(b, Columns) * dot(kappa, kappa);
+        const T energy = stiffness_.load(b, 0) * dot(kappa, kappa);
         sum += 0.5 * static_cast<double>(
                          lane_sum(select(batches_.active(batches_[b]), energy, zero)));
       }
@@ -285,7 +286,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         for (int l = 0; l < batches_[b].active; ++l)
           for (int i = 0; i < used_; ++i)
             for (int j = 0; j < used_; ++j) {
-              const double k = static_cast<double>(constants_.load(b, Columns)[l]) *
+              const double k = static_cast<double>(stiffness_.load(b, 0)[l]) *
                                static_cast<double>(constants_.load(b, i)[l]) *
                                static_cast<double>(constants_.load(b, j)[l]);
               const Eigen::Vector3d diagonal(
@@ -309,16 +310,23 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     CROSSBEAM_INLINE Vec3<T> curvature(const NodalState<R>& state, int b) const {
       const T zero(R(0));
       Vec3<T> kappa{zero, zero, zero};
-      const int columns = Columns == 3 ? 3 : used_;  // unused columns have no weight
-      for (int k = 0; k < columns; ++k)
-        kappa = kappa + constants_.load(b, k) *
-                            signed_copy<Mirrored>(batches_.gather(state.x, batches_[b], k), k);
+      if constexpr (Columns == 3) {  // unused columns have no weight
+        Vec3<T> x[Columns];
+        batches_.gather_all(state.x, batches_[b], x);
+        unrolled<Columns>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
+          kappa = kappa + constants_.load(b, k) * signed_copy<Mirrored>(x[k], k);
+        });
+      } else {
+        for (int k = 0; k < used_; ++k)
+          kappa = kappa + constants_.load(b, k) *
+                              signed_copy<Mirrored>(batches_.gather(state.x, batches_[b], k), k);
+      }
       return kappa;
     }
 
     template <bool Mirrored>
     CROSSBEAM_INLINE Vec3<T> moment(const NodalState<R>& state, int b) const {
-      Vec3<T> m = constants_.load(b, Columns) * curvature<Mirrored>(state, b);
+      Vec3<T> m = stiffness_.load(b, 0) * curvature<Mirrored>(state, b);
       if (batches_[b].active < lanes) {
         const auto active = batches_.active(batches_[b]);
         const T zero(R(0));
@@ -371,7 +379,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     std::array<R, Columns> sign_x_{}, sign_y_{};
     std::array<R, Columns> weights_[3]{};  // with their signs, of uniform stencils
     IndexBatches<Columns, T> batches_;
-    LaneArray<T> constants_;
+    LaneArray<T> constants_;  // weights
+    LaneArray<T> stiffness_;
   };
 
   static constexpr int most = 32;  // nodes of an oblique stencil: the ring and its images

@@ -338,12 +338,14 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       if constexpr (Element::has_hourglass) {
         if (hourglass_ > R(0)) work.hourglass.store(i, hourglass_stiffness(b) * hourglass_vector(b, D));
       } else if constexpr (Element::points > 1) {
-        CROSSBEAM_UNROLL
-        for (int v = 0; v < K; ++v) work.D[v].store(i, D[v]);
+        unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
+          work.D[v].store(i, D[v]);
+        });
       }
     } else {
-      CROSSBEAM_UNROLL
-      for (int v = 0; v < K; ++v) D[v] = work.D[v].load(i);
+      unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
+        D[v] = work.D[v].load(i);
+      });
     }
     const PointKinematics<T, M, K> kinematics(D, load_point(b, p));
     const FibreStrain<T> beta = strain(kinematics, batches_[b]);
@@ -361,15 +363,16 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     const int b = run.first_batch + k;
     const T zero(R(0));
     Vec3<T> force[K];
-    CROSSBEAM_UNROLL
-    for (int v = 0; v < K; ++v)
+    unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
       force[v] = p == 0 ? Vec3<T>{zero, zero, zero} : work.force[v].load(i);
+    });
     add_point_forces(PointKinematics<T, M, K>(work.f1.load(i), work.f2.load(i)),
                      {work.m11.load(i), work.m22.load(i), work.m12.load(i)}, load_point(b, p),
                      force);
     if (p + 1 < Element::points) {
-      CROSSBEAM_UNROLL
-      for (int v = 0; v < K; ++v) work.force[v].store(i, force[v]);
+      unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
+        work.force[v].store(i, force[v]);
+      });
       return;
     }
     if constexpr (Element::has_hourglass)
@@ -382,18 +385,21 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     const Batch& batch = batches_[b];
     if (batch.active < lanes) {
       const auto active = batches_.active(batch);
-      CROSSBEAM_UNROLL
-      for (int v = 0; v < K; ++v)
+      unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
         force[v] = {select(active, force[v].x, zero), select(active, force[v].y, zero),
                     select(active, force[v].z, zero)};
+      });
     }
     Vec3<T> corner[corners];
     Element::corner_forces(force, corner);
     if (run.contiguous) {
-      CROSSBEAM_UNROLL
-      for (int a = 0; a < corners; ++a) work.corner.put(a, i, corner[a]);
+      unrolled<corners>([&](auto a) CROSSBEAM_INLINE_LAMBDA {
+        work.corner.put(a, i, corner[a]);
+      });
     } else {
-      for (int a = 0; a < corners; ++a) batches_.subtract(state.f, batch, a, corner[a]);
+      unrolled<corners>([&](auto a) CROSSBEAM_INLINE_LAMBDA {
+        batches_.subtract(state.f, batch, a, corner[a]);
+      });
     }
   }
 
@@ -522,17 +528,16 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   CROSSBEAM_INLINE void relative_vectors(const NodeVectors<R>& x, const Batch& batch,
                                          Vec3<T> (&D)[K]) const {
     Vec3<T> corner[corners];
-    CROSSBEAM_UNROLL
-    for (int a = 0; a < corners; ++a) corner[a] = batches_.gather(x, batch, a);
+    batches_.gather_all(x, batch, corner);
     Element::relative_vectors(corner, D);
   }
 
   CROSSBEAM_INLINE PointLanes<T, M> load_point(int b, int p) const {
     PointLanes<T, M> point;
-    for (int k = 0; k < M; ++k) {
+    unrolled<M>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
       point.t1[k] = constants_.load(b, p * point_size + k);
       point.t2[k] = constants_.load(b, p * point_size + M + k);
-    }
+    });
     point.weight = constants_.load(b, p * point_size + 2 * M);
     return point;
   }
@@ -629,7 +634,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     // D_k = sum_a C_ak x_a; its eigenvalues are those of L^T Q L, where L L^T = C^T C.
     Eigen::Matrix<double, corners, K> C;
     for (int a = 0; a < corners; ++a) {
-      Vec3<double> x[corners], D[K];
+      Vec3<double> x[corners]{}, D[K];
       x[a].x = 1;
       Element::relative_vectors(x, D);
       for (int k = 0; k < K; ++k) C(a, k) = D[k].x;

@@ -33,7 +33,7 @@ class MembraneTangent {
 
   MembraneTangent() {
     for (int a = 0; a < corners; ++a) {
-      Vec3<double> x[corners], D[K];
+      Vec3<double> x[corners]{}, D[K];
       x[a].x = 1;
       Element::relative_vectors(x, D);
       for (int k = 0; k < K; ++k) corner_(k, a) = D[k].x;

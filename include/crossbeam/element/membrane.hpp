@@ -28,8 +28,7 @@ concept MembraneLaw = requires(const Law& law, const FibreStrain<T>& beta) {
 template <int M, class T, int K>
 CROSSBEAM_INLINE Vec3<T> fibre_vector(const Vec3<T> (&D)[K], const T (&t)[M]) {
   Vec3<T> f = t[0] * D[0];
-  CROSSBEAM_UNROLL
-  for (int k = 1; k < M; ++k) f = f + t[k] * D[k];
+  unrolled<M - 1>([&](auto k) CROSSBEAM_INLINE_LAMBDA { f = f + t[k + 1] * D[k + 1]; });
   return f;
 }
 
@@ -62,8 +61,9 @@ CROSSBEAM_INLINE void add_point_forces(const PointKinematics<T, M, K>& kinematic
   const T a11 = point.weight * m.m11, a22 = point.weight * m.m22, a12 = point.weight * m.m12;
   const Vec3<T> P1 = a11 * kinematics.f1 + a12 * kinematics.f2;
   const Vec3<T> P2 = a12 * kinematics.f1 + a22 * kinematics.f2;
-  CROSSBEAM_UNROLL
-  for (int k = 0; k < M; ++k) R[k] = R[k] + (point.t1[k] * P1 + point.t2[k] * P2);
+  unrolled<M>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
+    R[k] = R[k] + (point.t1[k] * P1 + point.t2[k] * P2);
+  });
 }
 
 }  // namespace crossbeam

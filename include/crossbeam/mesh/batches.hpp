@@ -161,6 +161,17 @@ class IndexBatches {
     return {T::load(x), T::load(y), T::load(z)};
   }
 
+  /// All columns at once.
+  CROSSBEAM_INLINE void gather_all(const NodeVectors<R>& a, const Batch& batch,
+                                   Vec3<T> (&out)[Columns]) const {
+    if (batch.gather_row < 0)
+      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
+        out[c] = crossbeam::load<T>(a, batch.first[c]);
+      });
+    else
+      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA { out[c] = gather(a, batch, c); });
+  }
+
   /// a[node] -= f of a gathered batch, lane after lane in the order of the tuples.
   CROSSBEAM_INLINE void subtract(NodeVectors<R>& a, const Batch& batch, int column,
                                  const Vec3<T>& f) const {
@@ -277,18 +288,17 @@ class RunForces {
   template <int Count>
   CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
                                 int columns) const {
-    for (int component = 0; component < 3; ++component) {
-      const R* from[Columns];
-      const int many = Count > 0 ? Count : columns;
-      for (int k = 0; k < many; ++k)
-        from[k] = force_[run.column[begin + k]][component] + front - run.shift[begin + k];
-      R* const to = out[component];
-      for (int i = 0; i < count; i += lanes) {
-        T sum = T::load(from[0] + i);
-        for (int k = 1; k < many; ++k) sum = sum + T::load(from[k] + i);
-        (T::load(to + i) - sum).store(to + i);
-      }
-    }
+    const int many = Count > 0 ? Count : columns;
+    const R* from[Columns];
+    for (int k = 0; k < many; ++k)
+      from[k] = force_[run.column[begin + k]][0] + front - run.shift[begin + k];
+    for (int i = 0; i < count; i += lanes)
+      unrolled<3>([&](auto component) CROSSBEAM_INLINE_LAMBDA {
+        T sum = T::load(from[0] + component * size + i);
+        for (int k = 1; k < many; ++k) sum = sum + T::load(from[k] + component * size + i);
+        R* const to = out[component] + i;
+        (T::load(to) - sum).store(to);
+      });
   }
 
   alignas(64) R force_[Columns][3][size];
@@ -346,20 +356,17 @@ class RunVectors {
   CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
                                 int columns, const std::array<R, Columns> (&weight)[3]) const {
     const int many = Count > 0 ? Count : columns;
-    for (int component = 0; component < 3; ++component) {
-      const R* from[Columns];
-      T w[Columns];
-      for (int k = 0; k < many; ++k) {
-        from[k] = vector_[component] + front - run.shift[begin + k];
-        w[k] = T(weight[component][run.column[begin + k]]);
-      }
-      R* const to = out[component];
-      for (int i = 0; i < count; i += lanes) {
-        T sum = w[0] * T::load(from[0] + i);
-        for (int k = 1; k < many; ++k) sum = sum + w[k] * T::load(from[k] + i);
-        (T::load(to + i) - sum).store(to + i);
-      }
-    }
+    const R* from[Columns];
+    for (int k = 0; k < many; ++k) from[k] = vector_[0] + front - run.shift[begin + k];
+    for (int i = 0; i < count; i += lanes)
+      unrolled<3>([&](auto component) CROSSBEAM_INLINE_LAMBDA {
+        const auto& w = weight[component];
+        T sum = T(w[run.column[begin]]) * T::load(from[0] + component * size + i);
+        for (int k = 1; k < many; ++k)
+          sum = sum + T(w[run.column[begin + k]]) * T::load(from[k] + component * size + i);
+        R* const to = out[component] + i;
+        (T::load(to) - sum).store(to);
+      });
   }
 
   alignas(64) R vector_[3][size];
