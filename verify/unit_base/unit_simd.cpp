@@ -94,7 +94,8 @@ TEST_CASE_TEMPLATE("comparisons, any and all of packs agree with the lanes", P, 
 }
 
 TEST_CASE_TEMPLATE("one true lane out of all makes any true and all false", P, Pack<double, 2>,
-                   Pack<double, 8>, Pack<float, 4>, Pack<float, 16>) {
+                   Pack<double, 4>, Pack<double, 8>, Pack<float, 4>, Pack<float, 8>,
+                   Pack<float, 16>) {
   for (int lane = 0; lane < crossbeam::lanes_v<P>; ++lane) {
     CAPTURE(lane);
     P p(0);
@@ -132,6 +133,7 @@ TEST_CASE_TEMPLATE("load, store, broadcast, lane_sum and lane_maximum of packs k
     CHECK(lane_maximum(raised) == S(100));
     CHECK(lane_sum(raised) == sum - values[lane] + S(100));
     CHECK(P(S(2.5))[lane] == S(2.5));
+    CHECK(std::signbit(P(S(-0.0))[lane]));
   }
 }
 

@@ -14,7 +14,7 @@
 namespace crossbeam {
 
 template <class T>
-T arcsine(const T& x);  // of kinematics/fibre_frame.hpp
+CROSSBEAM_INLINE T arcsine(const T& x);  // of kinematics/fibre_frame.hpp
 
 template <class T, int N>
 struct Dual {

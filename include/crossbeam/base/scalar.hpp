@@ -11,18 +11,37 @@
 #include <type_traits>
 #include <utility>
 
+/// Kernels are device code too where nvcc compiles them (docs/device_code.md); to other compilers the
+/// macro says nothing.
+#if defined(__CUDACC__)
+#define CROSSBEAM_HOST_DEVICE __host__ __device__
+#else
+#define CROSSBEAM_HOST_DEVICE
+#endif
+
 /// Kernels must be inlined as a whole: compilers otherwise pass packs through memory.
-#if defined(__GNUC__)
+#if defined(__CUDACC__)
+#define CROSSBEAM_INLINE __host__ __device__ __forceinline__
+#elif defined(__GNUC__)
 #define CROSSBEAM_INLINE [[gnu::always_inline]] inline
 #else
 #define CROSSBEAM_INLINE inline
 #endif
 
 /// The same for lambdas, behind their parameters.
-#if defined(__GNUC__)
+#if defined(__CUDACC__)
+#define CROSSBEAM_INLINE_LAMBDA
+#elif defined(__GNUC__)
 #define CROSSBEAM_INLINE_LAMBDA __attribute__((always_inline))
 #else
 #define CROSSBEAM_INLINE_LAMBDA
+#endif
+
+/// The same for what stays on the processor: the vector types of packs are none to a device.
+#if defined(__CUDACC__)
+#define CROSSBEAM_HOST_INLINE __forceinline__
+#else
+#define CROSSBEAM_HOST_INLINE CROSSBEAM_INLINE
 #endif
 
 namespace crossbeam {

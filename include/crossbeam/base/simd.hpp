@@ -7,9 +7,12 @@
 #include "crossbeam/base/scalar.hpp"
 
 #include <cstdint>
+#include <utility>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__ARM_NEON) && defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 namespace crossbeam {
@@ -46,22 +49,71 @@ struct PackMask {
   using Vector = typename detail::VectorOf<Integer, N>::type;
   Vector v;
 
-  CROSSBEAM_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v & b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v | b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v & b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v | b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator!(PackMask a) { return {~a.v}; }
-  CROSSBEAM_INLINE bool operator[](int lane) const { return v[lane] != 0; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v & b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v | b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v & b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v | b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator!(PackMask a) { return {~a.v}; }
+  CROSSBEAM_HOST_INLINE bool operator[](int lane) const { return v[lane] != 0; }
 
-  CROSSBEAM_INLINE friend bool any(PackMask a) {
-    Integer r = 0;
-    for (int i = 0; i < N; ++i) r |= a.v[i];
-    return r != 0;
+  CROSSBEAM_HOST_INLINE friend bool any(PackMask a) {
+    if constexpr (has_bits) {
+      return a.bits() != 0;
+    } else {
+      Integer r = 0;
+      for (int i = 0; i < N; ++i) r |= a.v[i];
+      return r != 0;
+    }
   }
-  CROSSBEAM_INLINE friend bool all(PackMask a) {
-    Integer r = -1;
-    for (int i = 0; i < N; ++i) r &= a.v[i];
-    return r != 0;
+  CROSSBEAM_HOST_INLINE friend bool all(PackMask a) {
+    if constexpr (has_bits) {
+      return (!a).bits() == 0;
+    } else {
+      Integer r = -1;
+      for (int i = 0; i < N; ++i) r &= a.v[i];
+      return r != 0;
+    }
+  }
+
+ private:
+  /// Whether `bits` has an instruction for masks of this size: g++ 12 makes a chain of shuffles of
+  /// the loops.
+#if defined(__AVX512DQ__)
+  static constexpr bool has_bits = sizeof(Vector) >= 16 && sizeof(Vector) <= 64;
+#elif defined(__AVX__)
+  static constexpr bool has_bits = sizeof(Vector) == 16 || sizeof(Vector) == 32;
+#elif defined(__SSE2__) || (defined(__ARM_NEON) && defined(__aarch64__))
+  static constexpr bool has_bits = sizeof(Vector) == 16;
+#else
+  static constexpr bool has_bits = false;
+#endif
+
+  /// Not zero where a lane is true.
+  CROSSBEAM_HOST_INLINE auto bits() const {
+#if defined(__AVX512DQ__)
+    if constexpr (sizeof(Vector) == 64 && sizeof(S) == 8)
+      return _mm512_movepi64_mask(__m512i(v));
+    else if constexpr (sizeof(Vector) == 64)
+      return _mm512_movepi32_mask(__m512i(v));
+    else
+#endif
+#if defined(__AVX__)
+        if constexpr (sizeof(Vector) == 32 && sizeof(S) == 8)
+      return _mm256_movemask_pd(__m256d(v));
+    else if constexpr (sizeof(Vector) == 32)
+      return _mm256_movemask_ps(__m256(v));
+    else
+#endif
+#if defined(__SSE2__)
+        if constexpr (sizeof(S) == 8)
+      return _mm_movemask_pd(__m128d(v));
+    else
+      return _mm_movemask_ps(__m128(v));
+#elif defined(__ARM_NEON) && defined(__aarch64__)
+    return vmaxvq_u32(uint32x4_t(v));
+#else
+    return 0;
+#endif
   }
 };
 
@@ -73,42 +125,42 @@ struct Pack {
   Vector v;
 
   Pack() = default;
-  CROSSBEAM_INLINE Pack(Vector x) : v(x) {}
-  /// Broadcast.
+  CROSSBEAM_HOST_INLINE Pack(Vector x) : v(x) {}
+  /// Broadcast. (s - 0 is s, and costs nothing; s + 0 would lose the sign of -0.)
   template <class A>
     requires std::is_arithmetic_v<A>
-  CROSSBEAM_INLINE Pack(A s) : v(static_cast<S>(s) - Vector{}) {}  // x - 0 is x, -0 too: no addition
+  CROSSBEAM_HOST_INLINE Pack(A s) : v(static_cast<S>(s) - Vector{}) {}
 
-  CROSSBEAM_INLINE static Pack load(const S* from) {
+  CROSSBEAM_HOST_INLINE static Pack load(const S* from) {
     return Vector(*reinterpret_cast<const typename detail::VectorOf<S, N>::unaligned*>(from));
   }
-  CROSSBEAM_INLINE void store(S* to) const {
+  CROSSBEAM_HOST_INLINE void store(S* to) const {
     *reinterpret_cast<typename detail::VectorOf<S, N>::unaligned*>(to) = v;
   }
-  CROSSBEAM_INLINE S operator[](int lane) const { return v[lane]; }
-  CROSSBEAM_INLINE void set(int lane, S value) { v[lane] = value; }
+  CROSSBEAM_HOST_INLINE S operator[](int lane) const { return v[lane]; }
+  CROSSBEAM_HOST_INLINE void set(int lane, S value) { v[lane] = value; }
 
-  CROSSBEAM_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
-  CROSSBEAM_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
-  CROSSBEAM_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
-  CROSSBEAM_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
-  CROSSBEAM_INLINE friend Pack operator-(Pack a) { return -a.v; }
-  CROSSBEAM_INLINE friend Pack operator+(Pack a) { return a; }
-  CROSSBEAM_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
-  CROSSBEAM_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
-  CROSSBEAM_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
+  CROSSBEAM_HOST_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator-(Pack a) { return -a.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator+(Pack a) { return a; }
+  CROSSBEAM_HOST_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
+  CROSSBEAM_HOST_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
+  CROSSBEAM_HOST_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
 
-  CROSSBEAM_INLINE friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
-  CROSSBEAM_INLINE friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
-  CROSSBEAM_INLINE friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
-  CROSSBEAM_INLINE friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
-  CROSSBEAM_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
 
-  CROSSBEAM_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
 
   /// Square root by the vector unit itself, so that no compiler flag is needed. (The masked forms:
   /// the plain 512-bit ones read an undefined register in g++ 12's headers and warn.)
-  CROSSBEAM_INLINE friend Pack sqrt(Pack a) {
+  CROSSBEAM_HOST_INLINE friend Pack sqrt(Pack a) {
 #if defined(__AVX512F__)
     if constexpr (sizeof(Vector) == 64 && sizeof(S) == 8)
       return Vector(_mm512_mask_sqrt_pd(__m512d(a.v), 0xff, __m512d(a.v)));
@@ -129,26 +181,37 @@ struct Pack {
     else if constexpr (sizeof(Vector) == 16)
       return Vector(_mm_sqrt_ps(__m128(a.v)));
     else
+#elif defined(__ARM_NEON) && defined(__aarch64__)
+    if constexpr (sizeof(Vector) == 16 && sizeof(S) == 8)
+      return Vector(vsqrtq_f64(float64x2_t(a.v)));
+    else if constexpr (sizeof(Vector) == 16)
+      return Vector(vsqrtq_f32(float32x4_t(a.v)));
+    else
 #endif
       return per_lane(a, [](S s) { return std::sqrt(s); });
   }
 
   template <class Op>
-  CROSSBEAM_INLINE friend Pack per_lane(Pack a, Op op) {
+  CROSSBEAM_HOST_INLINE friend Pack per_lane(Pack a, Op op) {
     Pack r;
     for (int i = 0; i < N; ++i) r.v[i] = op(a.v[i]);
     return r;
   }
 
-  CROSSBEAM_INLINE friend S lane_maximum(Pack a) {
-    S r = a.v[0];
-    for (int i = 1; i < N; ++i) r = a.v[i] > r ? a.v[i] : r;
-    return r;
+  // Lane after lane, in their order. Written out, for g++ -O2 runs a loop through memory.
+  CROSSBEAM_HOST_INLINE friend S lane_maximum(Pack a) {
+    return [a]<int... I>(std::integer_sequence<int, I...>) {
+      S r = a.v[0];
+      ((r = a.v[I] > r ? a.v[I] : r), ...);
+      return r;
+    }(std::make_integer_sequence<int, N>());
   }
-  CROSSBEAM_INLINE friend S lane_sum(Pack a) {
-    S r = a.v[0];
-    for (int i = 1; i < N; ++i) r += a.v[i];
-    return r;
+  CROSSBEAM_HOST_INLINE friend S lane_sum(Pack a) {
+    return [a]<int... I>(std::integer_sequence<int, I...>) {
+      S r = a.v[0];
+      ((r += a.v[I + 1]), ...);
+      return r;
+    }(std::make_integer_sequence<int, N - 1>());
   }
 };
 
@@ -158,14 +221,14 @@ template <class S>
 struct PackMask<S, 1> {
   bool v;
 
-  CROSSBEAM_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v && b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v || b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v && b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v || b.v}; }
-  CROSSBEAM_INLINE friend PackMask operator!(PackMask a) { return {!a.v}; }
-  CROSSBEAM_INLINE bool operator[](int) const { return v; }
-  CROSSBEAM_INLINE friend bool any(PackMask a) { return a.v; }
-  CROSSBEAM_INLINE friend bool all(PackMask a) { return a.v; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v && b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v || b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v && b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v || b.v}; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator!(PackMask a) { return {!a.v}; }
+  CROSSBEAM_HOST_INLINE bool operator[](int) const { return v; }
+  CROSSBEAM_HOST_INLINE friend bool any(PackMask a) { return a.v; }
+  CROSSBEAM_HOST_INLINE friend bool all(PackMask a) { return a.v; }
 };
 
 template <class S>
@@ -177,37 +240,37 @@ struct Pack<S, 1> {
   Pack() = default;
   template <class A>
     requires std::is_arithmetic_v<A>
-  CROSSBEAM_INLINE Pack(A s) : v(static_cast<S>(s)) {}
+  CROSSBEAM_HOST_INLINE Pack(A s) : v(static_cast<S>(s)) {}
 
-  CROSSBEAM_INLINE static Pack load(const S* from) { return *from; }
-  CROSSBEAM_INLINE void store(S* to) const { *to = v; }
-  CROSSBEAM_INLINE S operator[](int) const { return v; }
-  CROSSBEAM_INLINE void set(int, S value) { v = value; }
+  CROSSBEAM_HOST_INLINE static Pack load(const S* from) { return *from; }
+  CROSSBEAM_HOST_INLINE void store(S* to) const { *to = v; }
+  CROSSBEAM_HOST_INLINE S operator[](int) const { return v; }
+  CROSSBEAM_HOST_INLINE void set(int, S value) { v = value; }
 
-  CROSSBEAM_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
-  CROSSBEAM_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
-  CROSSBEAM_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
-  CROSSBEAM_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
-  CROSSBEAM_INLINE friend Pack operator-(Pack a) { return -a.v; }
-  CROSSBEAM_INLINE friend Pack operator+(Pack a) { return a; }
-  CROSSBEAM_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
-  CROSSBEAM_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
-  CROSSBEAM_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
+  CROSSBEAM_HOST_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator-(Pack a) { return -a.v; }
+  CROSSBEAM_HOST_INLINE friend Pack operator+(Pack a) { return a; }
+  CROSSBEAM_HOST_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
+  CROSSBEAM_HOST_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
+  CROSSBEAM_HOST_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
 
-  CROSSBEAM_INLINE friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
-  CROSSBEAM_INLINE friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
-  CROSSBEAM_INLINE friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
-  CROSSBEAM_INLINE friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
-  CROSSBEAM_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+  CROSSBEAM_HOST_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
 
-  CROSSBEAM_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a : b; }
-  CROSSBEAM_INLINE friend Pack sqrt(Pack a) { return std::sqrt(a.v); }
+  CROSSBEAM_HOST_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a : b; }
+  CROSSBEAM_HOST_INLINE friend Pack sqrt(Pack a) { return std::sqrt(a.v); }
   template <class Op>
-  CROSSBEAM_INLINE friend Pack per_lane(Pack a, Op op) {
+  CROSSBEAM_HOST_INLINE friend Pack per_lane(Pack a, Op op) {
     return static_cast<S>(op(a.v));
   }
-  CROSSBEAM_INLINE friend S lane_maximum(Pack a) { return a.v; }
-  CROSSBEAM_INLINE friend S lane_sum(Pack a) { return a.v; }
+  CROSSBEAM_HOST_INLINE friend S lane_maximum(Pack a) { return a.v; }
+  CROSSBEAM_HOST_INLINE friend S lane_sum(Pack a) { return a.v; }
 };
 
 template <class S, int N>
@@ -220,7 +283,7 @@ struct ScalarTraits<Pack<S, N>> {
 
 /// Integer part, towards zero, of numbers that fit an int: as numbers and as integers.
 template <class S, int N>
-CROSSBEAM_INLINE Pack<S, N> truncate(const Pack<S, N>& x, int (&integers)[N]) {
+CROSSBEAM_HOST_INLINE Pack<S, N> truncate(const Pack<S, N>& x, int (&integers)[N]) {
   if constexpr (N == 1) {
     integers[0] = static_cast<int>(x[0]);
     return Pack<S, N>(integers[0]);
@@ -235,7 +298,7 @@ CROSSBEAM_INLINE Pack<S, N> truncate(const Pack<S, N>& x, int (&integers)[N]) {
 
 /// c[k] of every lane = from(lane)[k], k = 0..2. Reads from(lane)[3] too.
 template <class From, class S, int N>
-CROSSBEAM_INLINE void gather_three(const From& from, Pack<S, N> (&c)[3]) {
+CROSSBEAM_HOST_INLINE void gather_three(const From& from, Pack<S, N> (&c)[3]) {
 #if defined(__AVX512F__)
   if constexpr (std::is_same_v<S, double> && N == 8) {
     const auto pair = [&](int k) {  // lanes k and k + 2

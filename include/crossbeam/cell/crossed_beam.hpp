@@ -187,12 +187,12 @@ class CrossedBeamCell {
     has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
   }
 
-  [[nodiscard]] const CellParameters<R>& parameters() const { return parameters_; }
-  [[nodiscard]] const Yarn& warp() const { return yarn1_; }
-  [[nodiscard]] const Yarn& weft() const { return yarn2_; }
-  [[nodiscard]] R contact_stiffness() const { return k3_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const CellParameters<R>& parameters() const { return parameters_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const Yarn& warp() const { return yarn1_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const Yarn& weft() const { return yarn2_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE R contact_stiffness() const { return k3_; }
   /// Elongations from -L up to this one have an answer, tag [C-12].
-  [[nodiscard]] R largest_elongation() const { return largest_elongation_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE R largest_elongation() const { return largest_elongation_; }
 
   /// Cell in equilibrium; its energy and tangent are computed only when asked for.
   template <class T>
@@ -396,7 +396,7 @@ class CrossedBeamCell {
   }
 
   template <class T>
-  void iterate(const T& u1, const T& u2, T& w1, T& w2, Solution<T>& solution) const {
+  CROSSBEAM_HOST_DEVICE void iterate(const T& u1, const T& u2, T& w1, T& w2, Solution<T>& solution) const {
     using std::sqrt;
     const R eps = std::numeric_limits<R>::epsilon();
     // The last correction is squared by the quadratic convergence: eps^(3/4) leaves eps^(3/2).
@@ -457,7 +457,7 @@ class CrossedBeamCell {
 
   /// Status of a solution that was iterated to convergence.
   template <class T>
-  void check(const T& u1, const T& u2, Solution<T>& solution) const {
+  CROSSBEAM_HOST_DEVICE void check(const T& u1, const T& u2, Solution<T>& solution) const {
     const auto within = [this](const T& u, R L) {
       return all(u > T(-L)) && all(u < T(largest_elongation_));
     };

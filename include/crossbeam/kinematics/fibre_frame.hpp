@@ -16,7 +16,7 @@ namespace detail {
 
 /// pi/2 in the precision of R.
 template <class R>
-R half_pi() {
+CROSSBEAM_HOST_DEVICE R half_pi() {
   if constexpr (std::is_floating_point_v<R>) {
     return std::numbers::pi_v<R> / 2;
   } else {

@@ -55,9 +55,9 @@ class WovenMembrane {
     width2_ = L2_ * inv_A0_;
   }
 
-  [[nodiscard]] const Cell& cell() const { return cell_; }
-  [[nodiscard]] const Shear& shear() const { return shear_; }
-  [[nodiscard]] const FibreAngle<R>& reference() const { return reference_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const Cell& cell() const { return cell_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const Shear& shear() const { return shear_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const FibreAngle<R>& reference() const { return reference_; }
 
   template <class T>
   using CellSolution = typename Cell::template Solution<T>;
