@@ -47,3 +47,4 @@
 #include "crossbeam/dynamics/membrane_sweep.hpp"
 #include "crossbeam/dynamics/model.hpp"
 #include "crossbeam/dynamics/statics.hpp"
+#include "crossbeam/dynamics/thread_team.hpp"

@@ -101,34 +101,48 @@ class ToolContact {
   /// Contact forces at t_n: adds them to state.f and keeps them for the bookkeeping.
   /// @param travel upper bound of the distance any node or this tool has moved since the start
   void add_forces(NodalState<R>& state, double dt, double travel) {
-    begin_forces();
-    add_forces(state, dt, travel, 0, state.node_count);
+    begin_forces(1);
+    add_forces(state, dt, travel, {0, state.node_count, 0});
+    end_forces();
   }
   /// Books the work of the step's forces with the velocities a v_n + b v_{n+1/2}, over a time
   /// `weight`; after the nodes have moved.
   void book(const NodalState<R>& state, double a, double b, double weight) {
-    book_nodes(state, a, b, 0, state.node_count);
+    book_nodes(state, a, b, {0, state.node_count, 0});
     book_tool(a, b, weight);
   }
 
-  /// @name The same for a range of nodes at a time, all of which have to be asked for once
+  /// @name The same for a part of the nodes at a time, all of which have to be asked for once. Parts
+  /// may be asked for by several threads; what they sum up is added in their order, tag [S-5].
   /// @{
+  struct Part {
+    int first, last;  ///< nodes: multiples of the pack width, or the node count
+    int number;       ///< 0 to parts - 1
+  };
   /// Forgets the forces of the last step.
-  virtual void begin_forces() {
+  virtual void begin_forces(int parts) { parts_.assign(static_cast<std::size_t>(parts), {}); }
+  virtual void add_forces(NodalState<R>& state, double dt, double travel, const Part& part) = 0;
+  /// Sums of the forces of all parts.
+  void end_forces() {
     force_ = {};
     stored_ = 0;
+    for (const PartSums& p : parts_) {
+      force_ = force_ + p.force;
+      stored_ += p.stored;
+    }
   }
-  /// @param first, last multiples of the pack width, or the node count
-  virtual void add_forces(NodalState<R>& state, double dt, double travel, int first, int last) = 0;
   /// Power of the forces on these nodes, for book_tool.
-  virtual void book_nodes(const NodalState<R>& state, double a, double b, int first, int last) = 0;
+  virtual void book_nodes(const NodalState<R>& state, double a, double b, const Part& part) = 0;
   /// Books the nodes' powers and the work at the tool itself; after `advance`.
   void book_tool(double a, double b, double weight) {
     const double v = velocity(a, b);
-    // Against the tool: its velocity is taken off all nodes at once.
-    work_.friction -= (friction_power_ - friction_z_ * v) * weight;
-    work_.damping -= (damping_power_ - damping_z_ * v) * weight;
-    friction_power_ = friction_z_ = damping_power_ = damping_z_ = 0;
+    double friction = 0, damping = 0;
+    for (PartSums& p : parts_) {  // against the tool: its velocity is taken off all nodes at once
+      friction += p.friction_power - p.friction_z * v;
+      damping += p.damping_power - p.damping_z * v;
+    }
+    work_.friction -= friction * weight;
+    work_.damping -= damping * weight;
     if (motion_.is_free()) {
       work_.tool += applied_ * v * weight;
       work_.damping +=
@@ -215,8 +229,13 @@ class ToolContact {
   bool moved_ = false;
   Vec3<double> force_{};
   double stored_ = 0;
-  /// Powers of the forces booked so far in this step, and their sums along z.
-  double friction_power_ = 0, friction_z_ = 0, damping_power_ = 0, damping_z_ = 0;
+  struct PartSums {
+    Vec3<double> force{};
+    double stored = 0;
+    /// Powers of the forces booked last, and the forces along z.
+    double friction_power = 0, friction_z = 0, damping_power = 0, damping_z = 0;
+  };
+  std::vector<PartSums> parts_;
 };
 
 /// Contact with a tool of a given shape. T is the pack the sweep runs on.
@@ -245,13 +264,14 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
 
   using Base::add_forces;
 
-  void begin_forces() override {
-    Base::begin_forces();
+  void begin_forces(int parts) override {
+    Base::begin_forces(parts);
     at_start_ = !started_;
     started_ = true;
   }
 
-  void add_forces(NodalState<R>& state, double dt, double travel, int first, int last) override {
+  void add_forces(NodalState<R>& state, double dt, double travel,
+                  const typename Base::Part& part) override {
     Step step;
     step.slip_time = T(static_cast<R>(at_start_ ? 0.0 : dt));  // no slip has happened before t = 0
     step.half_over_dt = T(static_cast<R>(0.5 / dt));
@@ -260,7 +280,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     step.velocity_now = T(static_cast<R>(this->predicted_velocity()));
     Sums sums;
     const T zero(R(0));
-    for (int n = first; n < last; n += lanes) {
+    for (int n = part.first; n < part.last; n += lanes) {
       const int b = n / lanes;
       if (parameters_.culling && travel < safe_until_[b]) continue;
       const T area = T::load(state.area.data() + n);
@@ -274,18 +294,20 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
         }
       touch<false>(state, n, travel, step, area, p, sums);
     }
-    this->force_.x += static_cast<double>(lane_sum(sums.force.x));
-    this->force_.y += static_cast<double>(lane_sum(sums.force.y));
-    this->force_.z += static_cast<double>(lane_sum(sums.force.z));
-    this->stored_ += static_cast<double>(lane_sum(sums.energy));
+    auto& out = this->parts_[part.number];
+    out.force = {static_cast<double>(lane_sum(sums.force.x)),
+                 static_cast<double>(lane_sum(sums.force.y)),
+                 static_cast<double>(lane_sum(sums.force.z))};
+    out.stored = static_cast<double>(lane_sum(sums.energy));
   }
 
-  void book_nodes(const NodalState<R>& state, double a, double b, int first, int last) override {
+  void book_nodes(const NodalState<R>& state, double a, double b,
+                  const typename Base::Part& part) override {
     // v_n = 2 v_{n+1/2} - v_predicted, whichever step the latter is for.
     const T ta(static_cast<R>(-a)), tb(static_cast<R>(2 * a + b));
     const T zero(R(0));
     T friction = zero, friction_z = zero, damping = zero, damping_z = zero;
-    for (int n = first; n < last; n += lanes) {
+    for (int n = part.first; n < part.last; n += lanes) {
       if (!active_[n / lanes]) continue;
       const Vec3<T> v = ta * load<T>(state.v_predicted, n) + tb * load<T>(state.v, n);
       const Vec3<T> f = load<T>(friction_, n), d = load<T>(damping_, n);
@@ -294,10 +316,11 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       damping = damping + dot(d, v);
       damping_z = damping_z + d.z;
     }
-    this->friction_power_ += static_cast<double>(lane_sum(friction));
-    this->friction_z_ += static_cast<double>(lane_sum(friction_z));
-    this->damping_power_ += static_cast<double>(lane_sum(damping));
-    this->damping_z_ += static_cast<double>(lane_sum(damping_z));
+    auto& out = this->parts_[part.number];
+    out.friction_power = static_cast<double>(lane_sum(friction));
+    out.friction_z = static_cast<double>(lane_sum(friction_z));
+    out.damping_power = static_cast<double>(lane_sum(damping));
+    out.damping_z = static_cast<double>(lane_sum(damping_z));
   }
 
   void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const override {

@@ -5,6 +5,7 @@
 
 #include "crossbeam/dynamics/ledger.hpp"
 #include "crossbeam/dynamics/model.hpp"
+#include "crossbeam/dynamics/thread_team.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +43,11 @@ class CentralDifference {
     model_.state.v_predicted = model_.state.v;
     for (const auto& t : model_.tools) t->reset_culling();
     level_start_ = model_.arrange(least_level);
-    travel_.assign(level_start_.size() - 1, 0.0);
+    level_state_.assign(level_start_.size() - 1, {});
+    // As many bands whatever the number of threads: the order of all sums is then the same.
+    const int bands = std::clamp(levels() / least_band, 1, most_bands);
+    band_start_.clear();
+    for (int band = 0; band <= bands; ++band) band_start_.push_back(levels() * band / bands);
     tool_travel_ = 0;
     is_constrained_.assign(static_cast<std::size_t>(model_.padded_count() / lanes), 0);
     for (int n = 0; n < model_.state.node_count; ++n) {
@@ -58,26 +63,46 @@ class CentralDifference {
   /// anything is not a number
   void step(EnergyLedger* sample = nullptr) {
     CROSSBEAM_EXPECTS(dt_ > 0);
-    for (const auto& b : model_.blocks) b->begin_step();
-    for (const auto& t : model_.tools) t->begin_forces();
+    for (const auto& b : model_.blocks) b->begin_step(model_.state);
+    for (const auto& t : model_.tools) t->begin_forces(levels());
     // Energies are those of x_n: then no node moves before all forces are known.
     const bool at_once = sample || steps_ == 0;
-    double fastest = 0;
-    for (int level = 0; level < levels(); ++level) {
+    // The bands beside each other, each without the stage that it shares with the one before; then
+    // those stages, and the nodes that had to wait for them.
+    team_.run(bands(), [&](int band) {
+      const int first = band_start_[band], last = band_start_[band + 1];
+      if (band > 0) clear_forces(first);
+      for (int level = band > 0 ? first + 1 : 0; level < last; ++level) {
+        clear_forces(level);
+        add_internal_forces(level);
+        if (!at_once && level - 1 >= first + (band > 0 ? 1 : 0)) finish(level - 1);
+      }
+      if (!at_once && band + 1 == bands()) finish(last - 1);
+    });
+    team_.run(bands() - 1, [&](int seam) {
+      const int level = band_start_[seam + 1];
       add_internal_forces(level);
-      if (!at_once && level > 0) fastest = faster(fastest, finish(level - 1));
-    }
+      if (at_once) return;
+      finish(level - 1);
+      finish(level);
+    });
+    double fastest = 0;
     EnergyLedger ledger;
     if (at_once) {
       for (int level = 0; level < levels(); ++level) add_contact_forces(level);
+      for (const auto& t : model_.tools) t->end_forces();
       if (steps_ == 0) begin();
       if (sample) {
         for (const auto& b : model_.blocks) b->add_energy(model_.state, ledger.internal);
         for (const auto& t : model_.tools) ledger.contact += t->stored_energy();
       }
-      for (int level = 0; level < levels(); ++level) fastest = faster(fastest, move(level));
+      for (int level = 0; level < levels(); ++level) move(level);
     } else {
-      fastest = faster(fastest, finish(levels() - 1));
+      for (const auto& t : model_.tools) t->end_forces();
+    }
+    for (const LevelState& level : level_state_) {
+      fastest = faster(fastest, level.speed);
+      mass_damping_power_ += level.mass_damping_power;
     }
     advance_tools();
     if (at_once) {
@@ -118,6 +143,10 @@ class CentralDifference {
     speed_limit_ = require_positive("speed_limit", limit, "mm/ms");
   }
 
+  /// Threads that share the step of a large mesh. The result is the same in every bit.
+  void set_threads(int threads) { team_ = ThreadTeam(threads); }
+  [[nodiscard]] int threads() const { return team_.threads(); }
+
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double time_step() const { return dt_; }
   [[nodiscard]] long long steps() const { return steps_; }
@@ -135,26 +164,40 @@ class CentralDifference {
  private:
   static constexpr int least_level = 256;
 
-  [[nodiscard]] int levels() const { return static_cast<int>(travel_.size()); }
+  /// Levels of a band at least: the seams between bands are the more work the narrower they are.
+  static constexpr int least_band = 8, most_bands = 64;
 
-  void add_internal_forces(int level) {
+  struct LevelState {
+    double travel = 0;              ///< bound of how far any node has moved since the start [mm]
+    double speed = 0;               ///< largest of the last step; no number stays none [mm/ms]
+    double mass_damping_power = 0;  ///< of the last step [kN mm/ms]
+  };
+
+  [[nodiscard]] int levels() const { return static_cast<int>(level_state_.size()); }
+  [[nodiscard]] int bands() const { return static_cast<int>(band_start_.size()) - 1; }
+
+  void clear_forces(int level) {
     const bool last = level + 1 == levels();
     model_.clear_forces(level_start_[level], last ? model_.padded_count() : level_start_[level + 1]);
+  }
+  void add_internal_forces(int level) {
     for (const auto& b : model_.blocks) b->add_forces(model_.state, dt_, level);
+  }
+  [[nodiscard]] typename ToolContact<R>::Part part(int level) const {
+    return {level_start_[level], level_start_[level + 1], level};
   }
   void add_contact_forces(int level) {
     for (const auto& t : model_.tools)
-      t->add_forces(model_.state, dt_, travel_[level] + tool_travel_, level_start_[level],
-                    level_start_[level + 1]);
+      t->add_forces(model_.state, dt_, level_state_[level].travel + tool_travel_, part(level));
   }
-  /// The rest of the step for nodes that have all their internal forces; returns the largest speed.
-  double finish(int level) {
+  /// The rest of the step for nodes that have all their internal forces.
+  void finish(int level) {
     add_contact_forces(level);
-    const double fastest = move(level);
-    const int first = level_start_[level], last = level_start_[level + 1];
-    for (const auto& t : model_.tools) t->book_nodes(model_.state, 1, 0, first, last);
-    if (model_.mass_damping > 0) mass_damping_power_ += mass_damping_power(1, 0, first, last);
-    return fastest;
+    move(level);
+    for (const auto& t : model_.tools) t->book_nodes(model_.state, 1, 0, part(level));
+    if (model_.mass_damping > 0)
+      level_state_[level].mass_damping_power =
+          mass_damping_power(1, 0, level_start_[level], level_start_[level + 1]);
   }
 
   /// The larger one; what is no number stays.
@@ -218,8 +261,8 @@ class CentralDifference {
     return {v.x * free.x, v.y * free.y, v.z * free.z};
   }
 
-  /// v_{n+1/2} and x_{n+1} of a level, tag [D-1]; returns the largest speed.
-  double move(int level) {
+  /// v_{n+1/2} and x_{n+1} of a level, tag [D-1].
+  void move(int level) {
     const double a = model_.mass_damping * dt_ / 2;
     const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
     const T dt(static_cast<R>(dt_)), half(R(0.5)), three_halves(R(1.5));
@@ -236,10 +279,10 @@ class CentralDifference {
       sum = sum + speed_squared;  // a NaN or an overflow stays in the sum
     }
     const double total = static_cast<double>(lane_sum(sum));
-    const double speed =
-        std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
-    travel_[level] += speed * dt_;
-    return speed;
+    LevelState& out = level_state_[level];
+    out.speed = std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
+    out.travel += out.speed * dt_;
+    out.mass_damping_power = 0;
   }
 
   /// Work of the step's forces with the velocities a v_n + b v_{n+1/2} over a time, tag [D-4].
@@ -290,7 +333,9 @@ class CentralDifference {
   Model<R> model_;
   std::vector<int> level_start_;
   std::vector<char> is_constrained_;  // packs with a node that is held
-  std::vector<double> travel_;  // bound of how far any node of a level has moved [mm]
+  std::vector<LevelState> level_state_;
+  std::vector<int> band_start_;  // first level of every band, and the level count
+  ThreadTeam team_;
   double dt_ = 0, time_ = 0, tool_travel_ = 0, speed_limit_ = 1e6;
   double mass_damping_work_ = 0, mass_damping_power_ = 0, initial_ = 0;
   long long steps_ = 0;

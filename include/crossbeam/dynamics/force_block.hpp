@@ -49,7 +49,8 @@ class ForceBlock {
   /// Sorts the work: what touches level s and none above is stage s.
   /// @param level_start first node of every level and the end; levels are wider than the bandwidth
   virtual void arrange(const std::vector<int>& /*level_start*/) {}
-  virtual void begin_step() {}
+  virtual void begin_step(const NodalState<R>&) {}
+  /// Stages that are two or more apart may run at the same time, tag [S-5].
   virtual void add_forces(NodalState<R>& state, double dt, int stage) {
     if (stage == 0) add_forces(state, dt);
   }

@@ -97,23 +97,25 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   [[nodiscard]] int bandwidth() const override { return batches_.bandwidth(); }
   void arrange(const std::vector<int>& level_start) override { batches_.arrange(level_start); }
 
-  void begin_step() override {
+  void begin_step(const NodalState<R>& state) override {
     started_ = begun_;
     begun_ = true;
-    viscous_step_ = 0;
+    if (static_cast<int>(stage_sums_.size()) != batches_.stages())
+      stage_sums_.assign(static_cast<std::size_t>(batches_.stages()), {});
+    if constexpr (follows)
+      if (!heights_known_) begin_heights(state);
   }
 
   void add_forces(NodalState<R>& state, double dt) override {
-    begin_step();
+    begin_step(state);
     for (int stage = 0; stage < batches_.stages(); ++stage) add_forces(state, dt, stage);
   }
 
   void add_forces(NodalState<R>& state, double dt, int stage) override {
-    const int first = batches_.first_run(stage), last = batches_.first_run(stage + 1);
     if (viscosity_)
-      sweep<true>(state, dt, first, last);
+      sweep<true>(state, dt, stage);
     else
-      sweep<false>(state, dt, first, last);
+      sweep<false>(state, dt, stage);
   }
 
   void add_energy(const NodalState<R>& state, InternalEnergy& energy) const override {
@@ -138,9 +140,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       energy.shear += static_cast<double>(lane_sum(select(active, shear, zero)));
       energy.hourglass += static_cast<double>(lane_sum(select(active, hourglass, zero)));
     }
-    energy.yarn += path_work_;
-    // At t_n only half of this step's dissipation has happened.
-    energy.bulk_viscosity += viscous_work_ - 0.5 * viscous_step_;
+    for (const StageSums& sums : stage_sums_) {
+      energy.yarn += sums.path_work;
+      // At t_n only half of this step's dissipation has happened.
+      energy.bulk_viscosity += sums.viscous_work - 0.5 * sums.viscous_step;
+    }
   }
 
   void add_tangent(const NodalState<R>& state, TangentEntries& tangent) const override {
@@ -156,7 +160,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   [[nodiscard]] long long points() const override {
     return static_cast<long long>(element_count_) * Element::points;
   }
-  [[nodiscard]] long long fallbacks() const override { return fallbacks_; }
+  [[nodiscard]] long long fallbacks() const override {
+    long long sum = 0;
+    for (const StageSums& sums : stage_sums_) sum += sums.fallbacks;
+    return sum;
+  }
   [[nodiscard]] const Law& law() const { return law_; }
 
   void sample(const NodalState<R>& state, std::vector<ElementSample>& out) const override {
@@ -285,6 +293,12 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     }
   }
 
+  /// What one stage has summed up: since the start, and in the last step.
+  struct StageSums {
+    double viscous_work = 0, viscous_step = 0, path_work = 0;
+    long long fallbacks = 0;
+  };
+
   /// What the loops over one run hand on to each other: it stays in the first-level cache.
   struct Work {
     static constexpr int size = IndexBatches<corners, T>::run_capacity;
@@ -317,11 +331,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   template <bool Viscous>
   CROSSBEAM_INLINE void run_forces(const Law& law, NodalState<R>& state,
                                    const typename IndexBatches<corners, T>::Run& run, Work& work,
-                                   T& power) {
+                                   T& power, StageSums& sums) {
     for (int p = 0; p < Element::points; ++p) {
       for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
         strain_point(state, run.first_batch + k, p, i, work);
-      stresses(law, run, p, work);
+      stresses(law, run, p, work, sums);
       if constexpr (Viscous) viscous_stresses(state, run, p, work, power);
       for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
         collect_point(state, run, k, p, i, work);
@@ -404,7 +418,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   }
 
   CROSSBEAM_INLINE void stresses(const Law& law, const typename IndexBatches<corners, T>::Run& run,
-                                 int p, Work& work) {
+                                 int p, Work& work, [[maybe_unused]] StageSums& sums) {
     if constexpr (follows) {
       for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
         T u1, u2, inv1, inv2;
@@ -458,7 +472,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         const FibreStrain<T> beta{work.b11.load(i), work.b22.load(i), work.b12.load(i)};
         const auto at = law.evaluate(beta);
         if constexpr (!has_energy)
-          book_path(b, p, load_point(b, p), beta, at, batches_.active(batches_[b]));
+          book_path(b, p, load_point(b, p), beta, at, batches_.active(batches_[b]), sums);
         const FibreStress<T> m = law.stress(at);
         const InverseStretches<T> inv(at.fibres.lambda1, at.fibres.lambda2);
         work.inv1.store(i, inv.first);
@@ -494,20 +508,19 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   }
 
   template <bool Viscous>
-  void sweep(NodalState<R>& state, double dt, int first_run, int last_run) {
-    if constexpr (follows)
-      if (!heights_known_) begin_heights(state);
+  void sweep(NodalState<R>& state, double dt, int stage) {
+    StageSums& sums = stage_sums_[stage];
     // A copy that no store can change: its constants then stay in registers or on the stack.
     using LocalLaw = std::conditional_t<std::is_trivially_copyable_v<Law>, const Law, const Law&>;
     LocalLaw law = law_;
     T power(R(0));
     Work work;
-    for (int r = first_run; r < last_run; ++r)
-      run_forces<Viscous>(law, state, batches_.run(r), work, power);
+    for (int r = batches_.first_run(stage); r < batches_.first_run(stage + 1); ++r)
+      run_forces<Viscous>(law, state, batches_.run(r), work, power, sums);
     if constexpr (Viscous) {
       const double step = static_cast<double>(lane_sum(power)) * dt;
-      viscous_step_ += step;
-      viscous_work_ += started_ ? step : 0.5 * step;  // nothing before t = 0
+      sums.viscous_step = step;
+      sums.viscous_work += started_ ? step : 0.5 * step;  // nothing before t = 0
     }
   }
 
@@ -567,7 +580,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
 
   template <class State, class Mask>
   void book_path(int b, int p, const PointLanes<T, M>& point, const FibreStrain<T>& beta,
-                 const State& at, const Mask& active) {
+                 const State& at, const Mask& active, StageSums& sums) {
     const auto tension = law_.yarn_tension(at);
     const T zero(R(0));
     const T m1 = select(active, tension(0) / at.fibres.lambda1, zero);
@@ -576,12 +589,12 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     const T work = T(R(0.5)) * point.weight *
                    ((m1 + previous_.load(b, i)) * (beta.b11 - previous_.load(b, i + 1)) +
                     (m2 + previous_.load(b, i + 2)) * (beta.b22 - previous_.load(b, i + 3)));
-    path_work_ += static_cast<double>(lane_sum(select(active, work, zero)));
+    sums.path_work += static_cast<double>(lane_sum(select(active, work, zero)));
     previous_.store(b, i, m1);
     previous_.store(b, i + 1, beta.b11);
     previous_.store(b, i + 2, m2);
     previous_.store(b, i + 3, beta.b22);
-    fallbacks_ += static_cast<long long>(
+    sums.fallbacks += static_cast<long long>(
         static_cast<double>(lane_sum(select(active, at.cell.fallback, zero))) + 0.5);
   }
 
@@ -665,8 +678,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   R hourglass_{};
   bool viscosity_ = false, started_ = false, begun_ = false, heights_known_ = false;
   double omega_squared_ = 0, damping_rate_ = 0;
-  double viscous_work_ = 0, viscous_step_ = 0, path_work_ = 0;
-  long long fallbacks_ = 0;
+  std::vector<StageSums> stage_sums_;
 };
 
 }  // namespace crossbeam
