@@ -146,6 +146,9 @@ class CentralDifference {
   /// Threads that share the step of a large mesh. The result is the same in every bit.
   void set_threads(int threads) { team_ = ThreadTeam(threads); }
   [[nodiscard]] int threads() const { return team_.threads(); }
+  /// Levels of nodes and bands of levels that the step goes through; after `start`.
+  [[nodiscard]] int levels() const { return static_cast<int>(level_state_.size()); }
+  [[nodiscard]] int bands() const { return static_cast<int>(band_start_.size()) - 1; }
 
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double time_step() const { return dt_; }
@@ -165,16 +168,13 @@ class CentralDifference {
   static constexpr int least_level = 256;
 
   /// Levels of a band at least: the seams between bands are the more work the narrower they are.
-  static constexpr int least_band = 8, most_bands = 64;
+  static constexpr int least_band = 6, most_bands = 64;
 
   struct LevelState {
     double travel = 0;              ///< bound of how far any node has moved since the start [mm]
     double speed = 0;               ///< largest of the last step; no number stays none [mm/ms]
     double mass_damping_power = 0;  ///< of the last step [kN mm/ms]
   };
-
-  [[nodiscard]] int levels() const { return static_cast<int>(level_state_.size()); }
-  [[nodiscard]] int bands() const { return static_cast<int>(band_start_.size()) - 1; }
 
   void clear_forces(int level) {
     const bool last = level + 1 == levels();

@@ -289,7 +289,7 @@ class RunForces {
   CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
                                 int columns) const {
     const int many = Count > 0 ? Count : columns;
-    const R* from[Columns];
+    const R* from[Columns] = {};
     for (int k = 0; k < many; ++k)
       from[k] = force_[run.column[begin + k]][0] + front - run.shift[begin + k];
     for (int i = 0; i < count; i += lanes)
@@ -356,7 +356,7 @@ class RunVectors {
   CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
                                 int columns, const std::array<R, Columns> (&weight)[3]) const {
     const int many = Count > 0 ? Count : columns;
-    const R* from[Columns];
+    const R* from[Columns] = {};
     for (int k = 0; k < many; ++k) from[k] = vector_[0] + front - run.shift[begin + k];
     for (int i = 0; i < count; i += lanes)
       unrolled<3>([&](auto component) CROSSBEAM_INLINE_LAMBDA {

@@ -1,0 +1,180 @@
+// The step in levels, bands and threads, and with cells that are followed.
+
+#include "dynamics/scenes.hpp"
+#include "support/claim.hpp"
+
+#include "crossbeam/mesh/numbering.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace scenes;
+using verify::claim;
+
+using Pack4 = NativePack<double>;
+using Followed = WovenMembrane<CrossedBeamCell<double>, ConstantShear<double>, CellPrice::followed>;
+
+/// A slender taut sheet pushed by a sphere: many levels, several bands, contact in some of them.
+struct Strip {
+  static constexpr double length = 2800;
+  Mesh<4> mesh;
+  explicit Strip(bool shuffled = false)
+      : mesh(rectangle(length, 60, 560, 12, 0.0)) {
+    if (shuffled) {
+      verify::Random random(7);
+      std::vector<std::array<int, 4>> elements = mesh.elements;
+      auto fibres = mesh.fibres;
+      for (std::size_t e = elements.size(); e > 1; --e) {
+        const auto other = static_cast<std::size_t>(random.uniform(0, double(e)));
+        std::swap(elements[e - 1], elements[other]);
+        std::swap(fibres[e - 1], fibres[other]);
+      }
+      mesh.elements = elements;
+      mesh.fibres = fibres;
+    }
+  }
+
+  template <class Law>
+  [[nodiscard]] CentralDifference<Pack4> run(const Law& law, double viscosity = 0.06,
+                                             bool tools = true, double speed = 1) const {
+    std::vector<NodeConstraint> held;
+    for (int n = 0; n < mesh.node_count; ++n) {
+      const auto X = mesh.nodes.get(n);
+      if (X.x == 0 || X.x == length || X.y == 0 || X.y == 60) held.push_back({n, true, true, true});
+    }
+    NodalState<double> state(mesh, areal_mass, held);
+    for (int n = 0; n < mesh.node_count; ++n) {
+      const auto X = mesh.nodes.get(n);
+      state.x.set(n, {1.005 * X.x, 1.005 * X.y, 0});
+      state.v.set(n, {0, 0, speed * state.free.z[n] * std::sin(pi * X.x / 140) * std::sin(pi * X.y / 60)});
+    }
+    CentralDifference<Pack4> out(std::move(state), areal_mass, 0.02);
+    out.add(std::make_unique<MembraneSweep<Pack4, Quadrilateral<1>, Law>>(
+        mesh, law, areal_mass, MembraneOptions{1e-4, viscosity}));
+    out.add(std::make_unique<BendingSweep<Pack4>>(mesh, BendingStiffness{1.4e-3, 1.4e-3},
+                                                  areal_mass));
+    if (!tools) return out;
+    for (const double x : {700.0, 2100.0})
+      out.add(tool<Pack4>(Sphere<double>({x, 30, -60}, 60),
+                          ToolMotion::prescribed([](double t) { return 2 * t; }),
+                          ContactParameters{}, mesh.node_count));
+    return out;
+  }
+};
+
+struct End {
+  Points x;
+  double viscous = 0, tool_work = 0, friction = 0, kinetic = 0;
+};
+
+template <class Run>
+End finish(Run run, int steps, int threads, double factor = 0.9) {
+  run.set_threads(threads);
+  run.start(factor * run.critical_step());
+  EnergyLedger ledger;
+  for (int k = 0; k < steps; ++k) run.step(k % 50 == 49 ? &ledger : nullptr);
+  run.step(&ledger);
+  End out{positions(run), ledger.internal.bulk_viscosity, 0, 0, ledger.kinetic};
+  if (run.tools().empty()) return out;
+  out.tool_work = run.tools()[0]->work().tool;
+  out.friction = run.tools()[1]->work().friction;
+  return out;
+}
+
+int different(const End& a, const End& b) {
+  int count = 0;
+  for (std::size_t n = 0; n < a.x.size(); ++n)
+    count += std::memcmp(a.x[n].data(), b.x[n].data(), 3 * sizeof(double)) != 0;
+  return count + (a.viscous != b.viscous) + (a.tool_work != b.tool_work) +
+         (a.friction != b.friction) + (a.kinetic != b.kinetic);
+}
+
+/// The same scheme without levels: every force of the step, then every node.
+class AtOnce final : public ForceBlock<double> {
+ public:
+  explicit AtOnce(std::unique_ptr<ForceBlock<double>> block) : block_(std::move(block)) {}
+  void add_forces(NodalState<double>& state, double dt) override { block_->add_forces(state, dt); }
+  void add_energy(const NodalState<double>& s, InternalEnergy& e) const override {
+    block_->add_energy(s, e);
+  }
+  [[nodiscard]] double omega_squared() const override { return block_->omega_squared(); }
+  [[nodiscard]] double damping_rate() const override { return block_->damping_rate(); }
+
+ private:
+  std::unique_ptr<ForceBlock<double>> block_;
+};
+
+}  // namespace
+
+TEST_SUITE_BEGIN("dynamics");
+
+TEST_CASE("V-DYN-10 levels, bands and any number of threads give the same step") {
+  const Strip strip;
+  const auto law = fabric(pi / 2, 0.01);
+  // Premise: there are bands to share, and more threads than one get some.
+  {
+    auto run = strip.run(law);
+    REQUIRE(run.model().blocks[0]->bandwidth() < 64);
+    run.start(0.9 * run.critical_step());
+    REQUIRE(run.bands() >= 2);
+  }
+  const End one = finish(strip.run(law), 400, 1);
+  REQUIRE(one.tool_work > 0);
+  REQUIRE(one.friction > 0);
+  REQUIRE(one.viscous > 0);
+  REQUIRE(different(one, finish(strip.run(law, 0.0600001), 400, 1)) > 0);  // can fail
+  for (const int threads : {2, 3, 4})
+    claim("V-DYN-10", different(one, finish(strip.run(law), 400, threads)), 0,
+          "nodes and works that differ in any bit, " + std::to_string(threads) + " threads");
+
+  // Against the whole step at once: the order of a node's sums differs where bands meet.
+  auto whole = strip.run(law);
+  auto& blocks = const_cast<std::vector<std::unique_ptr<ForceBlock<double>>>&>(whole.blocks());
+  for (auto& block : blocks) block = std::make_unique<AtOnce>(std::move(block));
+  const End at_once = finish(std::move(whole), 400, 1);
+  claim("V-DYN-10", distance(one.x, at_once.x), 1e-10,
+        "positions against a step without levels [mm]: 400 steps of roundings of 1e-13");
+  claim("V-DYN-10", std::abs(one.friction / at_once.friction - 1), 1e-8, "work of friction, relative");
+
+  // Elements in any order: one level, gathered, the same motion.
+  const Strip shuffled(true);
+  const End mixed = finish(shuffled.run(law), 400, 2);
+  claim("V-DYN-10", distance(one.x, mixed.x), 1e-10, "positions with shuffled elements [mm]");
+
+  CHECK_THROWS_AS(ThreadTeam(0), InputError);
+  CHECK_THROWS_AS(ThreadTeam(257), InputError);
+}
+
+TEST_CASE("V-DYN-11 a run with followed cells is one with cells in equilibrium, to second order") {
+  const Strip strip;
+  const auto law = fabric(pi / 2, 0.01);
+  const Followed followed(law.cell(), law.shear());
+  // The same step for both: what differs is the cell alone. No tools: first contact is a kink.
+  const auto gap = [&](double factor) {
+    const int steps = static_cast<int>(std::lround(60 / factor));
+    return distance(finish(strip.run(law, 0.06, false, 40), steps, 2, factor).x,
+                    finish(strip.run(followed, 0.06, false, 40), steps, 2, factor).x);
+  };
+  const double coarse = gap(0.8), fine = gap(0.2);
+  REQUIRE(coarse > 1e-11);  // above rounding
+  claim("V-DYN-11", std::log2(coarse / fine) / 2, 1.8, "order of the gap over two halvings",
+        verify::Bound::lower);
+  claim("V-DYN-11", coarse, 1e-5, "gap at 0.8 of the critical step [mm], of a motion of millimetres");
+
+  // Methods that evaluate a state more than once have no last step to follow from.
+  auto run = strip.run(followed);
+  Model<double> model(run.model().state, areal_mass);
+  model.add(std::make_unique<MembraneSweep<Pack4, Quadrilateral<1>, Followed>>(
+      strip.mesh, followed, areal_mass, MembraneOptions{}));
+  CHECK_THROWS_WITH_AS(model.require_no_memory(),
+                       doctest::Contains("followed from step to step"), InputError);
+}
+
+TEST_SUITE_END();
