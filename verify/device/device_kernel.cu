@@ -131,8 +131,8 @@ std::vector<Input<R, Element>> random_elements() {
     const Vec3<R> f2{l2 * std::sin(gamma - turn), l2 * std::cos(gamma - turn), R(0)};
     const Vec3<R> place{uniform(-150, 150), uniform(-250, 250), uniform(-10, 10)};
     for (int a = 0; a < corners; ++a)
-      element.corner[a] = place + X[a].x * f1 + X[a].y * f2 +
-                          Vec3<R>{R(0), R(0), uniform(-0.05, 0.05)};
+      element.corner[a] =
+          place + X[a].x * f1 + X[a].y * f2 + Vec3<R>{R(0), R(0), uniform(-0.05, 0.05)};
   }
   return elements;
 }
@@ -194,10 +194,11 @@ bool compare(const char* name, const F& function, const std::vector<typename F::
     }
     unequal += std::memcmp(host, device, sizeof host) != 0;
   }
-  std::printf("device: %s, %s: %d threads, largest number %.3g, largest difference %.3g, "
-              "%d not equal in every bit\n",
-              sizeof(R) == 8 ? "double" : "float", name, count, double(largest),
-              double(largest_difference), unequal);
+  std::printf(
+      "device: %s, %s: %d threads, largest number %.3g, largest difference %.3g, "
+      "%d not equal in every bit\n",
+      sizeof(R) == 8 ? "double" : "float", name, count, double(largest), double(largest_difference),
+      unequal);
   return unequal == 0 && largest > R(0);
 }
 

@@ -209,9 +209,8 @@ void compare_all() {
   const auto law = [&](const auto& shear) {
     return WovenMembrane(cell, shear, angle, YarnWidth::corrected, SolverControl::fixed(3));
   };
-  compare_elements<P>(
-      law(PolynomialShear<S>(PolynomialCurve<S>({S(1e-4), S(0), S(2e-3)}), angle)), random,
-      samples);
+  compare_elements<P>(law(PolynomialShear<S>(PolynomialCurve<S>({S(1e-4), S(0), S(2e-3)}), angle)),
+                      random, samples);
   compare_elements<P>(law(ConstantShear<S>(S(1e-3), angle)), random, samples);
 
   const HeightTableGrid<S> grid{S(0), S(120), S(0), S(220), S(2), true, true};
@@ -258,10 +257,11 @@ int main() {
   using Float = NativePack<float>;
   compare_all<Double>();
   compare_all<Float>();
-  std::printf("lanes: %s, packs of %d double and %d float: %lld numbers compared, %lld not equal in "
-              "every bit (%d states slack, %d taut, %d and %d sheared beyond -0.8 and 0.8 rad)\n",
-              instruction_set(), lanes_v<Double>, lanes_v<Float>, compared, unequal, slack, taut,
-              sheared_left, sheared_right);
+  std::printf(
+      "lanes: %s, packs of %d double and %d float: %lld numbers compared, %lld not equal in "
+      "every bit (%d states slack, %d taut, %d and %d sheared beyond -0.8 and 0.8 rad)\n",
+      instruction_set(), lanes_v<Double>, lanes_v<Float>, compared, unequal, slack, taut,
+      sheared_left, sheared_right);
   const bool covered = slack > 100 && taut > 100 && sheared_left > 100 && sheared_right > 100;
   return unequal == 0 && covered ? 0 : 1;
 }
