@@ -10,8 +10,8 @@
 #include <limits>
 #include <type_traits>
 
-/// Kernels are device code too where nvcc compiles them (docs/device_code.md); to other compilers the
-/// macro says nothing.
+/// Kernels are device code too where nvcc compiles them (docs/device_code.md); to other compilers
+/// the macro says nothing.
 #if defined(__CUDACC__)
 #define CROSSBEAM_HOST_DEVICE __host__ __device__
 #else
