@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <utility>
 
-/// Kernels are device code too where nvcc compiles them (docs/device_code.md); to other compilers the
-/// macro says nothing.
+/// Kernels are device code too where nvcc compiles them (docs/device_code.md); to other compilers
+/// the macro says nothing.
 #if defined(__CUDACC__)
 #define CROSSBEAM_HOST_DEVICE __host__ __device__
 #else

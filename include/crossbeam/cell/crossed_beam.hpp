@@ -187,7 +187,9 @@ class CrossedBeamCell {
     has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
   }
 
-  [[nodiscard]] CROSSBEAM_HOST_DEVICE const CellParameters<R>& parameters() const { return parameters_; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const CellParameters<R>& parameters() const {
+    return parameters_;
+  }
   [[nodiscard]] CROSSBEAM_HOST_DEVICE const Yarn& warp() const { return yarn1_; }
   [[nodiscard]] CROSSBEAM_HOST_DEVICE const Yarn& weft() const { return yarn2_; }
   [[nodiscard]] CROSSBEAM_HOST_DEVICE R contact_stiffness() const { return k3_; }
@@ -396,7 +398,8 @@ class CrossedBeamCell {
   }
 
   template <class T>
-  CROSSBEAM_HOST_DEVICE void iterate(const T& u1, const T& u2, T& w1, T& w2, Solution<T>& solution) const {
+  CROSSBEAM_HOST_DEVICE void iterate(const T& u1, const T& u2, T& w1, T& w2,
+                                     Solution<T>& solution) const {
     using std::sqrt;
     const R eps = std::numeric_limits<R>::epsilon();
     // The last correction is squared by the quadratic convergence: eps^(3/4) leaves eps^(3/2).

@@ -34,8 +34,8 @@ class SecondOrderCell {
   /// `status`.
   /// @param control of the energy cell, where it has to answer
   template <class T>
-  CROSSBEAM_HOST_DEVICE Solution<T> solve(const T& u1, const T& u2,
-                                          SolverControl control = SolverControl::converged()) const {
+  CROSSBEAM_HOST_DEVICE Solution<T> solve(
+      const T& u1, const T& u2, SolverControl control = SolverControl::converged()) const {
     static_assert(ScalarTraits<T>::derivative_order == 0,
                   "the second-order cell has no potential and no differentiable solver");
     Solution<T> solution;
