@@ -5,8 +5,8 @@ usage: bench/compile_time.py [--out out/bench/compile_time.json] [--compiler g++
                              [--include DIR ...] [--repetitions 3]
 
 Compiles a file that includes all of crossbeam, and one that uses a law, a membrane sweep and the
-central-difference step, both with -O3. Prints the median of the wall time [s] and the peak memory
-[MiB] of the compiler, and writes them as rows like those of Google Benchmark.
+central-difference step, both with -O3. Prints the medians of wall time [s], processor time [s] and
+peak memory [MiB] of the compiler, and writes them as rows like those of Google Benchmark.
 """
 
 import argparse
@@ -30,6 +30,7 @@ SOURCES = {
 #include "crossbeam/crossbeam.hpp"
 """,
     "one_law_one_step": """
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/central_difference.hpp"
 #include "crossbeam/dynamics/membrane_sweep.hpp"
 
@@ -121,7 +122,8 @@ def main():
             runs = [compiled(command + ["-c", str(source), "-o", os.devnull])
                     for _ in range(arguments.repetitions)]
             rows.append(row(name, arguments.repetitions, runs))
-            print(f"{rows[-1]['run_name']:32} {rows[-1]['real_time']:7.2f} s "
+            print(f"{rows[-1]['run_name']:32} {rows[-1]['real_time']:7.2f} s, "
+                  f"processor {rows[-1]['cpu_time']:6.2f} s, "
                   f"{rows[-1]['peak_memory_bytes'] / 2**20:7.0f} MiB")
 
     out = pathlib.Path(arguments.out)
