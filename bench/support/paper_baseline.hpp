@@ -57,8 +57,8 @@ class Cell {
     tolerance_ = 1e-13 * warp_.along;
   }
 
-  /// Forces (F_warp, F_weft). The iteration begins at the forces given: none for a cold start, those
-  /// of the cell's previous answer for a warm one.
+  /// Forces (F_warp, F_weft). The iteration begins at the forces given: none for a cold start,
+  /// those of the cell's previous answer for a warm one.
   template <Solver solver>
   [[nodiscard]] Eigen::Vector2d forces(
       const Eigen::Vector2d& u, Eigen::Vector2d F = Eigen::Vector2d::Zero()) const {
@@ -125,8 +125,8 @@ class Membrane {
   }
 
   /// Second Piola-Kirchhoff stress in the axes Y at the strain E in the same axes.
-  /// @param previous the point's forces of the step before, replaced by those of this one; null for a
-  ///        cold start
+  /// @param previous the point's forces of the step before, replaced by those of this one; null for
+  ///        a cold start
   template <Solver solver>
   [[nodiscard]] Eigen::Matrix2d stress(const Eigen::Matrix2d& E,
                                        Eigen::Vector2d* previous = nullptr) const {

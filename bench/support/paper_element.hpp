@@ -3,8 +3,8 @@
 /// The yardstick timed over the ring, each time after a check that it answers as the library's
 /// second-order law does.
 ///
-/// Warm: every entry of the ring remembers its answer, and its strain moves by one time step between
-/// two visits, to and fro. (Without that movement there would be nothing left to iterate.)
+/// Warm: every entry of the ring remembers its answer, and its strain moves by one time step
+/// between two visits, to and fro. (Without that movement there would be nothing left to iterate.)
 
 #include "support/element_forces.hpp"
 #include "support/fabric.hpp"

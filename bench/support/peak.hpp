@@ -56,7 +56,8 @@ double peak_flops() {
       const auto begin = Clock::now();
       run_fma_chains<R>(rounds);
       const std::chrono::duration<double> seconds = Clock::now() - begin;
-      best = std::max(best, static_cast<double>(rounds) * flops_per_fma_round<R>() / seconds.count());
+      const double flops = static_cast<double>(rounds) * flops_per_fma_round<R>();
+      best = std::max(best, flops / seconds.count());
     }
     return best;
   }();

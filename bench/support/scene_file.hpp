@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// A fabric and a strain history of one's own for the Gauss-point benchmark, from a scene file of the
-/// drape (docs/theory/scenes.md) with one table more:
+/// A fabric and a strain history of one's own for the Gauss-point benchmark, from a scene file of
+/// the drape (docs/theory/scenes.md) with one table more:
 ///
 ///   [history]
 ///   warp  = [0.0, 0.01]    # stretch of the warp - 1 [-]
@@ -89,8 +89,8 @@ inline RingStates history_states(const toml::table& history, const std::string& 
   const auto shear = history_list(history, file, "shear", "rad", -1.2, 1.2);
   for (const auto& [name, list] : {std::pair{"weft", &weft}, {"shear", &shear}})
     if (list->size() != warp.size())
-      throw InputError(std::string("history.") + name, std::to_string(list->size()) + " numbers", "",
-                       "as many as history.warp, " + std::to_string(warp.size()) + " (" + file +
+      throw InputError(std::string("history.") + name, std::to_string(list->size()) + " numbers",
+                       "", "as many as history.warp, " + std::to_string(warp.size()) + " (" + file +
                            ":" + std::to_string(history.get(name)->source().begin.line) + ")");
   RingStates states;
   for (int k = 0; k < ring_size; ++k) {
@@ -179,8 +179,9 @@ class SceneFile {
     const drape::ShearInput& shear = fabric_.shear;
     switch (shear.kind) {
       case drape::ShearLawKind::constant:
-        return use(membrane(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure), control),
-                   iterated);
+        return use(
+            membrane(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure), control),
+            iterated);
       case drape::ShearLawKind::polynomial:
         return use(membrane(cell,
                             PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle),

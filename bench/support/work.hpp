@@ -17,8 +17,8 @@ struct Work {
   double bytes = 0;  ///< that have to come in and go out, whatever cache they are in; 0: not said
 };
 
-/// Flops of `kernel(k)` per state of the ring, k = 0..ring_size-1, on counting numbers: a mean where
-/// the number of sweeps depends on the state.
+/// Flops of `kernel(k)` per state of the ring, k = 0..ring_size-1, on counting numbers: a mean
+/// where the number of sweeps depends on the state.
 template <class Kernel>
 double counted_flops(const Kernel& kernel) {
   crossbeam::reset_operation_count();
