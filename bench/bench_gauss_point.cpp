@@ -6,25 +6,31 @@
 ///
 /// Laws: `measured_shear`, the energy cell with the shear curve of the scene `realistic`;
 /// `constant_shear`, the energy cell with Eq. 26; `second_order`, the paper's cell with Eq. 26.
-/// `paper_*` are the yardstick: Eq. 1-20 and 24-27 in plain Eigen (support/paper_baseline.hpp).
+/// `paper_*` are the yardstick: Eq. 1-20 and 24-27 in plain Eigen (support/paper_element.hpp).
+///
+/// With --scene=FILE instead the fabric and the strain history of that file, law `scene`
+/// (support/scene_file.hpp).
 
+#include "support/element_forces.hpp"
 #include "support/fabric.hpp"
 #include "support/lanes.hpp"
-#include "support/paper_baseline.hpp"
+#include "support/paper_element.hpp"
 #include "support/report.hpp"
 #include "support/ring.hpp"
+#include "support/scene_file.hpp"
+#include "support/work.hpp"
 
 #include "crossbeam/base/dual.hpp"
-#include "crossbeam/element/membrane.hpp"
-#include "crossbeam/element/quadrilateral.hpp"
 
-#include <cmath>
-#include <numbers>
+#include <cstdio>
+#include <cstring>
 #include <string>
+#include <utility>
 
 namespace bench {
 namespace {
 
+using crossbeam::Counting;
 using crossbeam::CrossedBeamCell;
 using crossbeam::Dual;
 using crossbeam::FibreStrain;
@@ -32,65 +38,40 @@ using crossbeam::FibreStress;
 using crossbeam::real_t;
 using crossbeam::SecondOrderCell;
 using crossbeam::SolverControl;
-using crossbeam::Vec3;
+using Quad = crossbeam::Quadrilateral<1>;
 
-/// Runs `kernel(strain)` over the ring.
+/// What the points go through.
+RingStates& ring_states() {
+  static RingStates states = random_states();
+  return states;
+}
+
+template <class T>
+CROSSBEAM_INLINE FibreStrain<T> strain(const Ring<real_t<T>>& ring, int k) {
+  return {load<T>(ring.b11, k), load<T>(ring.b22, k), load<T>(ring.b12, k)};
+}
+
+/// Runs `kernel(strain)` over the ring. What it returns is what goes out.
 template <class T, class Kernel>
 void time_points(benchmark::State& state, const Kernel& kernel) {
-  const Ring<real_t<T>> ring;
+  using R = real_t<T>;
+  const Ring<R> ring(ring_states());
   for (auto _ : state)
     for (int k = 0; k < ring_size; k += crossbeam::lanes_v<T>) {
       if constexpr (crossbeam::ScalarTraits<T>::derivative_order == 0)
-        benchmark::DoNotOptimize(kernel(
-            FibreStrain<T>{load<T>(ring.b11, k), load<T>(ring.b22, k), load<T>(ring.b12, k)}));
+        benchmark::DoNotOptimize(kernel(strain<T>(ring, k)));
       else
         benchmark::DoNotOptimize(kernel(FibreStrain<T>{load_variable<T>(ring.b11, k, 0),
                                                        load_variable<T>(ring.b22, k, 1),
                                                        load_variable<T>(ring.b12, k, 2)}));
     }
   report(state, ring_size, "time_per_point");
-}
-
-/// A square element of edge 1 mm with one point, as in Ring, its constants in every lane.
-template <class T>
-struct UnitElement {
-  using Quad = crossbeam::Quadrilateral<1>;
-  crossbeam::PointLanes<T, Quad::membrane_vectors> point;
-
-  UnitElement() {
-    using R = real_t<T>;
-    const auto constants = Quad::coefficients<R>(
-        {{{R(0), R(0), R(0)}, {R(1), R(0), R(0)}, {R(1), R(1), R(0)}, {R(0), R(1), R(0)}}},
-        {{R(1), R(0), R(0)}, {R(0), R(1), R(0)}})[0];
-    for (std::size_t k = 0; k < Quad::membrane_vectors; ++k) {
-      point.t1[k] = T(constants.t1[k]);
-      point.t2[k] = T(constants.t2[k]);
-    }
-    point.weight = T(constants.weight);
+  if constexpr (crossbeam::ScalarTraits<T>::derivative_order == 0) {
+    using Counted = Counting<R>;
+    const double flops = counted_flops([&](int k) { return kernel(strain<Counted>(ring, k)); });
+    using Answer = decltype(kernel(strain<R>(ring, 0)));
+    report_work<R>(state, ring_size, {flops, 3.0 * sizeof(R) + sizeof(Answer)});
   }
-};
-
-template <class T>
-struct QuadForces {
-  Vec3<T> corner[4];
-};
-
-/// Positions -> strain -> cell -> stress -> corner forces, without hourglass control.
-template <class T, class Law>
-CROSSBEAM_INLINE QuadForces<T> corner_forces(const Law& law, const UnitElement<T>& element,
-                                             const Ring<real_t<T>>& ring, int k) {
-  using Quad = crossbeam::Quadrilateral<1>;
-  Vec3<T> x[4], D[3], force[3]{};
-  for (std::size_t a = 0; a < 4; ++a)
-    x[a] = {load<T>(ring.corner[a].x, k), load<T>(ring.corner[a].y, k),
-            load<T>(ring.corner[a].z, k)};
-  Quad::relative_vectors(x, D);
-  const crossbeam::PointKinematics<T, Quad::membrane_vectors, 3> kinematics(D, element.point);
-  const auto at = law.evaluate(kinematics.strain(law.reference().cosine));
-  add_point_forces(kinematics, law.stress(at), element.point, force);
-  QuadForces<T> out;
-  Quad::corner_forces(force, out.corner);
-  return out;
 }
 
 template <class T>
@@ -112,16 +93,10 @@ template <class T, class Law>
 void register_forces(const std::string& law_name, const std::string& iterated, const Law& law) {
   const auto name = namer<T>(law_name, iterated);
   benchmark::RegisterBenchmark(name("forces").c_str(), [law](benchmark::State& state) {
-    time_points<T>(state,
-                   [&](const FibreStrain<T>& beta) { return law.stress(law.evaluate(beta)); });
+    time_points<T>(state, [&](const auto& beta) { return law.stress(law.evaluate(beta)); });
   });
   benchmark::RegisterBenchmark(name("corner_forces").c_str(), [law](benchmark::State& state) {
-    const Ring<real_t<T>> ring;
-    const UnitElement<T> element;
-    for (auto _ : state)
-      for (int k = 0; k < ring_size; k += crossbeam::lanes_v<T>)
-        benchmark::DoNotOptimize(corner_forces<T>(law, element, ring, k));
-    report(state, ring_size, "time_per_point");
+    time_corner_forces<T, Quad>(state, law, ring_states(), "time_per_point");
   });
 }
 
@@ -141,9 +116,9 @@ void register_derivatives(const std::string& law_name, const std::string& iterat
     time_points<D>(state, energy);
   });
   benchmark::RegisterBenchmark(name("forces_and_tangent").c_str(), [law](benchmark::State& state) {
-    time_points<T>(state, [&](const FibreStrain<T>& beta) {
+    time_points<T>(state, [&]<class S>(const FibreStrain<S>& beta) {
       const auto at = law.evaluate(beta);
-      return StressAndTangent<T>{law.stress(at), law.hessian(at)};
+      return StressAndTangent<S>{law.stress(at), law.hessian(at)};
     });
   });
   benchmark::RegisterBenchmark(
@@ -153,86 +128,33 @@ void register_derivatives(const std::string& law_name, const std::string& iterat
       });
 }
 
-/// The yardstick, after a check that it answers as the library's second-order law does.
-template <paper::Solver solver>
-void paper_point(benchmark::State& state) {
-  const paper::Membrane law(cell_parameters<double>(), shear_modulus, 0, std::numbers::pi / 2);
-  const auto same = membrane(SecondOrderCell<double>(cell_parameters<double>()),
-                             constant_shear<double>(), SolverControl::converged());
-  const Ring<double> ring;
-  const auto strain = [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
-    Eigen::Matrix2d E;
-    E << ring.b11[i], ring.b12[i], ring.b12[i], ring.b22[i];
-    return E;
-  };
-  for (int k = 0; k < ring_size; ++k) {
-    const Eigen::Matrix2d E = strain(k), S = law.stress<solver>(E);
-    const auto at = same.evaluate(FibreStrain<double>{E(0, 0), E(1, 1), E(0, 1)});
-    const auto m = same.stress(at);
-    if (at.cell.fallback == 0 &&
-        !(std::abs(S(0, 0) - m.m11) < 1e-10 && std::abs(S(1, 1) - m.m22) < 1e-10 &&
-          std::abs(S(0, 1) - m.m12) < 1e-10))
-      return state.SkipWithError("the yardstick differs from the second-order law");
-  }
-  for (auto _ : state)
-    for (int k = 0; k < ring_size; ++k) benchmark::DoNotOptimize(law.stress<solver>(strain(k)));
-  report(state, ring_size, "time_per_point");
-}
-
-template <paper::Solver solver>
-void paper_corner_forces(benchmark::State& state) {
-  const paper::Membrane law(cell_parameters<double>(), shear_modulus, 0, std::numbers::pi / 2);
-  const auto same = membrane(SecondOrderCell<double>(cell_parameters<double>()),
-                             constant_shear<double>(), SolverControl::converged());
-  const Ring<double> ring;
-  const UnitElement<double> element;
-  paper::Corners X;
-  X << 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0;
-  const auto corners = [&](int k) {
-    paper::Corners x;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const auto p = ring.corner[a].get(k);
-      x.col(static_cast<Eigen::Index>(a)) << p.x, p.y, p.z;
-    }
-    return x;
-  };
-  for (int k = 0; k < ring_size; ++k) {
-    const paper::Corners f = law.corner_forces<solver>(X, corners(k));
-    const auto expected = corner_forces<double>(same, element, ring, k);
-    for (int a = 0; a < 4; ++a) {
-      const auto& e = expected.corner[a];
-      if (!((f.col(a) - Eigen::Vector3d(e.x, e.y, e.z)).norm() < 1e-10))
-        return state.SkipWithError("the yardstick differs from the second-order law");
-    }
-  }
-  for (auto _ : state)
-    for (int k = 0; k < ring_size; ++k)
-      benchmark::DoNotOptimize(law.corner_forces<solver>(X, corners(k)));
-  report(state, ring_size, "time_per_point");
-}
-
-template <paper::Solver solver>
+template <paper::Solver solver, Start start = Start::cold>
 void register_paper(const std::string& name) {
   benchmark::RegisterBenchmark(("gauss_point/forces/" + name + "/converged/double").c_str(),
-                               paper_point<solver>);
-  benchmark::RegisterBenchmark(("gauss_point/corner_forces/" + name + "/converged/double").c_str(),
-                               paper_corner_forces<solver>);
+                               paper_point<solver, start>);
+  benchmark::RegisterBenchmark(
+      ("gauss_point/corner_forces/" + name + "/converged/double").c_str(),
+      [](benchmark::State& state) { paper_corner_forces<solver, start>(state); });
 }
 
-[[maybe_unused]] const bool registered = [] {
-  record_build();
+/// What the loop costs itself: strains in, strains out.
+template <class T>
+void register_nothing() {
+  benchmark::RegisterBenchmark(
+      ("gauss_point/nothing/" + number_name<T>()).c_str(), [](benchmark::State& state) {
+        time_points<T>(state, [](const auto& beta) { return beta; });
+      });
+}
+
+void register_fabric() {
   register_paper<paper::Solver::lu_4x4>("paper_lu_4x4");
   register_paper<paper::Solver::inverse_2x2>("paper_inverse_2x2");
+  register_paper<paper::Solver::inverse_2x2, Start::warm>("paper_inverse_2x2_warm");
   for_each_number([]<class T>() {
     using R = real_t<T>;
     const CrossedBeamCell<R> cell(cell_parameters<R>());
     const auto converged = SolverControl::converged();
-    // What the loop costs itself: strains in, strains out.
-    benchmark::RegisterBenchmark(
-        ("gauss_point/nothing/" + number_name<T>()).c_str(), [](benchmark::State& state) {
-          time_points<T>(state, [](const FibreStrain<T>& beta) { return beta; });
-        });
+    register_nothing<T>();
     register_forces<T>(
         "second_order", "converged",
         membrane(SecondOrderCell<R>(cell_parameters<R>()), constant_shear<R>(), converged));
@@ -247,8 +169,55 @@ void register_paper(const std::string& name) {
     add("3_sweeps", SolverControl::fixed(3));
     add("2_sweeps", SolverControl::fixed(2));
   });
-  return true;
-}();
+}
+
+/// The fabric of a scene with as many sweeps as it says.
+void register_scene(const SceneFile& scene) {
+  ring_states() = scene.states;
+  for_each_number([&]<class T>() {
+    using R = real_t<T>;
+    register_nothing<T>();
+    scene.with_law<R>([](const auto& law, const std::string& iterated) {
+      register_forces<T>("scene", iterated, law);
+      if constexpr (requires(const FibreStrain<R>& beta) { law.hessian(law.evaluate(beta)); })
+        register_derivatives<T>("scene", iterated, law);
+    });
+  });
+}
+
+/// Takes the argument --scene=FILE out of the list; empty if there is none.
+std::string take_scene(int& argc, char** argv) {
+  const std::string option = "--scene=";
+  std::string file;
+  int kept = 0;
+  for (int k = 0; k < argc; ++k)
+    if (k > 0 && std::strncmp(argv[k], option.c_str(), option.size()) == 0)
+      file = argv[k] + option.size();
+    else
+      argv[kept++] = argv[k];
+  argc = kept;
+  argv[argc] = nullptr;
+  return file;
+}
 
 }  // namespace
 }  // namespace bench
+
+int main(int argc, char** argv) {
+  using namespace bench;
+  try {
+    const std::string file = take_scene(argc, argv);
+    if (file.empty())
+      register_fabric();
+    else
+      register_scene(SceneFile(file));
+  } catch (const crossbeam::InputError& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 1;
+  }
+  record_build();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

@@ -10,6 +10,7 @@ variation over the repetitions; no host name and no paths.
 
 import argparse
 import json
+import os
 import sys
 
 # Title; numerator; denominator (a slower benchmark over a faster one reads as "times faster").
@@ -103,6 +104,8 @@ def read(files):
     """Context of the first file; {benchmark: {"ns": median, "cv": coefficient of variation}}."""
     context, results = {}, {}
     for name in files:
+        if os.path.getsize(name) == 0:  # a filter that matched nothing in this program
+            continue
         with open(name, encoding="utf-8") as file:
             data = json.load(file)
         context = context or {k: data["context"][k] for k in CONTEXT if k in data["context"]}
@@ -111,7 +114,9 @@ def read(files):
                 sys.exit(f"{row['name']}: {row['error_message']}")
             if row.get("run_type") != "aggregate":
                 continue
-            time = next(v for k, v in row.items() if k.startswith("time_per_"))
+            time = next((v for k, v in row.items() if k.startswith("time_per_")), None)
+            if time is None:  # a rate of the machine, not a time per item
+                continue
             entry = results.setdefault(row["run_name"], {})
             entry["repetitions"] = row["repetitions"]
             if row["aggregate_name"] == "median":

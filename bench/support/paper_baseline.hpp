@@ -57,10 +57,11 @@ class Cell {
     tolerance_ = 1e-13 * warp_.along;
   }
 
-  /// Forces (F_warp, F_weft).
+  /// Forces (F_warp, F_weft). The iteration begins at the forces given: none for a cold start,
+  /// those of the cell's previous answer for a warm one.
   template <Solver solver>
-  [[nodiscard]] Eigen::Vector2d forces(const Eigen::Vector2d& u) const {
-    Eigen::Vector2d F = Eigen::Vector2d::Zero();
+  [[nodiscard]] Eigen::Vector2d forces(
+      const Eigen::Vector2d& u, Eigen::Vector2d F = Eigen::Vector2d::Zero()) const {
     for (int iteration = 0; iteration < 50; ++iteration) {
       const Eigen::Matrix4d K = K_E_ + geometric_stiffness(F);
       Eigen::Vector4d x;
@@ -124,18 +125,23 @@ class Membrane {
   }
 
   /// Second Piola-Kirchhoff stress in the axes Y at the strain E in the same axes.
+  /// @param previous the point's forces of the step before, replaced by those of this one; null for
+  ///        a cold start
   template <Solver solver>
-  [[nodiscard]] Eigen::Matrix2d stress(const Eigen::Matrix2d& E) const {
+  [[nodiscard]] Eigen::Matrix2d stress(const Eigen::Matrix2d& E,
+                                       Eigen::Vector2d* previous = nullptr) const {
     Eigen::Matrix2d c;  // Eq. 9
     c << 1, 0, std::cos(delta_bar_), std::sin(delta_bar_);
     const Eigen::Matrix2d beta = c * E * c.transpose();     // Eq. 10
     const double l1 = std::sqrt(2 * beta(0, 0) + 1) * L1_;  // Eq. 13
     const double l2 = std::sqrt(2 * beta(1, 1) + 1) * L2_;
-    const Eigen::Vector2d u(l1 - L1_, l2 - L2_);        // Eq. 14
-    const Eigen::Vector2d F = cell_.forces<solver>(u);  // Eq. 24, 25
-    const double P11 = F(0) / L2_, P22 = F(1) / L1_;    // Eq. 15
-    Eigen::Matrix2d m = Eigen::Matrix2d::Zero();        // Eq. 19
-    m(0, 0) = P11 / (l1 / L1_);                         // Eq. 17, 18
+    const Eigen::Vector2d u(l1 - L1_, l2 - L2_);  // Eq. 14
+    const Eigen::Vector2d F =                     // Eq. 24, 25
+        previous ? cell_.forces<solver>(u, *previous) : cell_.forces<solver>(u);
+    if (previous) *previous = F;
+    const double P11 = F(0) / L2_, P22 = F(1) / L1_;  // Eq. 15
+    Eigen::Matrix2d m = Eigen::Matrix2d::Zero();      // Eq. 19
+    m(0, 0) = P11 / (l1 / L1_);                       // Eq. 17, 18
     m(1, 1) = P22 / (l2 / L2_);
     Eigen::Matrix2d S = c.transpose() * m * c;  // Eq. 20
     S(0, 1) += G12_ * E(0, 1);                  // Eq. 26, 27
@@ -145,14 +151,15 @@ class Membrane {
 
   /// Forces of the corners of a four-node element with one point, from its corners before and after.
   template <Solver solver>
-  [[nodiscard]] Corners corner_forces(const Corners& X, const Corners& x) const {
+  [[nodiscard]] Corners corner_forces(const Corners& X, const Corners& x,
+                                      Eigen::Vector2d* previous = nullptr) const {
     Eigen::Matrix<double, 4, 2> dN;  // of the shape functions at the centre
     dN << -0.25, -0.25, 0.25, -0.25, 0.25, 0.25, -0.25, 0.25;
-    const Base G = X * dN, g = x * dN;                                    // Eq. 1
-    const Eigen::Matrix2d A = G.transpose() * G, a = g.transpose() * g;   // Eq. 2
-    const Eigen::Matrix2d alpha = (a - A) / 2;                            // Eq. 3
-    const Eigen::Matrix2d d = cartesian_from_convected(A);                // Eq. 4, 5, 7
-    const Eigen::Matrix2d S = stress<solver>(d * alpha * d.transpose());  // Eq. 6
+    const Base G = X * dN, g = x * dN;                                   // Eq. 1
+    const Eigen::Matrix2d A = G.transpose() * G, a = g.transpose() * g;  // Eq. 2
+    const Eigen::Matrix2d alpha = (a - A) / 2;                           // Eq. 3
+    const Eigen::Matrix2d d = cartesian_from_convected(A);               // Eq. 4, 5, 7
+    const Eigen::Matrix2d S = stress<solver>(d * alpha * d.transpose(), previous);  // Eq. 6
     const double area = 4 * std::sqrt(A.determinant());
     return area * g * (d.transpose() * S * d) * dN.transpose();
   }

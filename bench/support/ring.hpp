@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <vector>
 
 namespace bench {
 
@@ -29,7 +30,39 @@ class Uniform {
   std::mt19937_64 engine_;
 };
 
-/// Yarn elongations from -2 to 3 % and shear angles up to 0.7 rad, fibres perpendicular at first.
+/// One state of the ring.
+struct RingState {
+  double warp, weft;  ///< stretch of the yarns - 1 [-]
+  double shear;       ///< shear angle [rad]
+  double tilt = 0;    ///< of the element about y [rad]
+};
+using RingStates = std::vector<RingState>;
+
+/// Yarn elongations from -2 to 3 % and shear angles up to 0.7 rad.
+inline RingStates random_states() {
+  Uniform random(20261122);
+  RingStates states;
+  for (int k = 0; k < ring_size; ++k) {
+    const double warp = random(-0.02, 0.03), weft = random(-0.02, 0.03);
+    const double shear = random(-0.7, 0.7), tilt = random(-1, 1);
+    states.push_back({warp, weft, shear, tilt});
+  }
+  return states;
+}
+
+/// The states one explicit time step later: strains of the drape move by some 1e-5 per step.
+inline RingStates one_step_later(RingStates states) {
+  constexpr double increment = 1e-5;
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const double sign = k % 2 == 0 ? 1 : -1;
+    states[k].warp += sign * increment;
+    states[k].weft -= sign * increment;
+    states[k].shear += increment;
+  }
+  return states;
+}
+
+/// Fibres perpendicular at first.
 template <class R>
 struct Ring {
   crossbeam::AlignedArray<R> b11, b22, b12;  ///< fibre strains
@@ -37,12 +70,12 @@ struct Ring {
   /// Corners of a deformed square element of edge 1 mm, turned in space [mm].
   std::array<crossbeam::NodeVectors<R>, 4> corner;
 
-  Ring() {
+  /// @param states ring_size of them
+  explicit Ring(const RingStates& states = random_states()) {
     for (auto* a : {&b11, &b22, &b12, &u1, &u2}) a->resize(ring_size);
     corner.fill(crossbeam::NodeVectors<R>(ring_size));
-    Uniform random(20261122);
     for (std::size_t k = 0; k < ring_size; ++k) {
-      const double e1 = random(-0.02, 0.03), e2 = random(-0.02, 0.03), g = random(-0.7, 0.7);
+      const auto& [e1, e2, g, tilt] = states.at(k);
       const double l1 = 1 + e1, l2 = 1 + e2, length = 2.5;
       b11[k] = R(0.5 * (l1 * l1 - 1));
       b22[k] = R(0.5 * (l2 * l2 - 1));
@@ -50,7 +83,7 @@ struct Ring {
       u1[k] = R(length * e1);
       u2[k] = R(length * e2);
       // Warp in the plane turned by `tilt` about y, weft at the sheared angle in that plane.
-      const double tilt = random(-1, 1), c = std::cos(tilt), s = std::sin(tilt);
+      const double c = std::cos(tilt), s = std::sin(tilt);
       const crossbeam::Vec3<double> warp{l1 * c, 0, l1 * s};
       const crossbeam::Vec3<double> weft{l2 * std::sin(g) * c, l2 * std::cos(g),
                                          l2 * std::sin(g) * s};
