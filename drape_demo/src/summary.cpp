@@ -149,6 +149,29 @@ Json references_json(const References& r) {
   };
 }
 
+/// What the scene computes, and what it therefore does without (docs/skipping.md).
+Json work_json(const DrapeCase& c) {
+  Json used = Json::array(), skipped = Json::array();
+  const auto sort = [&](bool is_used, const char* what) { (is_used ? used : skipped).push_back(what); };
+  const bool energy_cell = c.fabric.formulation == CellFormulation::energy;
+  const bool followed = energy_cell && c.fabric.cell_sweeps == 0;
+  sort(true, c.blank.gauss_points == 1 ? "1 Gauss point" : "2x2 Gauss points");
+  sort(true, c.integration.precision == Precision::float_ ? "float" : "double");
+  sort(!followed, "cell solved at every step");
+  sort(followed, "cell followed from step to step");
+  sort(c.fabric.cell.residual_compression_stiffness > 0, "residual compression stiffness");
+  sort(c.fabric.warp_bending_stiffness > 0 || c.fabric.weft_bending_stiffness > 0, "bending");
+  sort(c.blank.gauss_points == 1 && c.blank.hourglass_stiffness > 0, "hourglass control");
+  sort(c.integration.bulk_viscosity > 0, "bulk viscosity");
+  sort(c.integration.mass_damping > 0, "mass damping");
+  sort(c.contact.friction > 0, "friction");
+  sort(c.contact.smoothing > 0, "smooth penalty");
+  sort(!c.contact.culling, "contact of every node with every tool");
+  sort(c.output.frames > 0, "output frames");
+  sort(c.integration.axial_scaling > 1, "axial scaling");
+  return {{"used", used}, {"skipped", skipped}};
+}
+
 std::string frame_name(std::size_t frame) { return fmt::format("frames/frame_{:04}.vtu", frame); }
 
 }  // namespace
@@ -206,6 +229,7 @@ nlohmann::ordered_json summary_json(const DrapeCase& drape_case, const DrapeResu
                   {"ns_per_element_step", result.cost.ns_per_element_step},
                   {"time_step_ms", result.cost.time_step_ms},
                   {"elements", result.quads.size()}};
+  json["work"] = work_json(drape_case);
   json["case"] = case_json(drape_case);
   json["machine"] = machine_json();
   json["build"] = build_json();

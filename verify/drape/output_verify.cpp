@@ -394,6 +394,13 @@ TEST_CASE("V-IO-12 summary.json has the promised keys with the run's values") {
   CHECK(json["ledger"]["bulk_viscosity"] == last.bulk_viscosity);
   CHECK(json["ledger"]["residual_over_punch_work"] == 5e-5);
   CHECK(json["cost"]["steps"] == 34567);
+  // Every option is either used or skipped, and each in the right list.
+  CHECK(json["work"]["used"].size() + json["work"]["skipped"].size() == 14);
+  const auto lists = [&](const char* list, const char* what) {
+    return std::count(json["work"][list].begin(), json["work"][list].end(), what) == 1;
+  };
+  CHECK(lists("used", "bending"));
+  CHECK(lists("skipped", "smooth penalty"));
   CHECK(json["cost"]["element_steps"] == 34567 * 3);
   CHECK(json["cost"]["cpu_s"] == 4.5);
   CHECK(json["cost"]["ns_per_element_step"] == 100.5);
