@@ -17,13 +17,22 @@ namespace {
 
 namespace drape = crossbeam::drape;
 
+/// What of the contact's skipping is left out.
+enum class Skipping { all, no_culling };
+
 void double_dome(benchmark::State& state, double element_size, double speed,
-                 drape::Precision precision) {
+                 drape::Precision precision, Skipping skipping = Skipping::all,
+                 double axial_scaling = 1) {
   drape::DrapeCase scene = drape::load_scene(drape::scene_path("realistic"));
   scene.blank.element_size = element_size;
   scene.process.speed = speed;
   scene.integration.precision = precision;
   scene.output.frames = 1;
+  scene.contact.culling = skipping != Skipping::no_culling;
+  if (axial_scaling > 1) {
+    scene.integration.axial_scaling = axial_scaling;
+    scene.contact.penalty = 0.005;  // else the contact's own step is the shorter one
+  }
   double element_steps = 0;
   for (auto _ : state) {
     const drape::DrapeResult result = drape::run(scene, drape::Progress());
@@ -40,9 +49,20 @@ void double_dome(benchmark::State& state, double element_size, double speed,
       const bool is_float = precision == drape::Precision::float_;
       const std::string full_name =
           std::string("step/double_dome/") + name + (is_float ? "/pack_float" : "/pack_double");
-      benchmark::RegisterBenchmark(full_name.c_str(), double_dome, size, speed, precision)
+      benchmark::RegisterBenchmark(full_name.c_str(), double_dome, size, speed, precision,
+                                   Skipping::all, 1.0)
           ->Unit(benchmark::kMillisecond);
     }
+  const auto double_ = drape::Precision::double_;
+  benchmark::RegisterBenchmark("step/double_dome/10_mm/no_culling/pack_double", double_dome, 10.0,
+                               8.0, double_, Skipping::no_culling, 1.0)
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("step/double_dome/5_mm/axial_scaling_25/pack_double", double_dome, 5.0,
+                               2.0, double_, Skipping::all, 25.0)
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("step/double_dome/5_mm/axial_scaling_25/pack_float", double_dome, 5.0,
+                               2.0, drape::Precision::float_, Skipping::all, 25.0)
+      ->Unit(benchmark::kMillisecond);
   return true;
 }();
 

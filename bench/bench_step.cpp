@@ -10,10 +10,14 @@
 #include "crossbeam/dynamics/bending_sweep.hpp"
 #include "crossbeam/dynamics/central_difference.hpp"
 #include "crossbeam/dynamics/membrane_sweep.hpp"
+#include "crossbeam/mesh/numbering.hpp"
 
 #include <cmath>
+#include <algorithm>
 #include <memory>
 #include <numbers>
+#include <numeric>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,8 +39,22 @@ struct Sheet {
 
 struct Options {
   int points = 1;  ///< 1 or 4
+  bool unstructured = false;  ///< elements and nodes in random order, then numbered by levels
   bool bending = true, viscosity = true, hourglass = true;
 };
+
+/// Nodes and elements in an order drawn by lot.
+crossbeam::Numbering shuffled(const crossbeam::Mesh<4>& mesh) {
+  std::mt19937_64 random(1);
+  crossbeam::Numbering out;
+  out.node.resize(static_cast<std::size_t>(mesh.node_count));
+  out.element.resize(static_cast<std::size_t>(mesh.element_count()));
+  for (auto* list : {&out.node, &out.element}) {
+    std::iota(list->begin(), list->end(), 0);
+    std::shuffle(list->begin(), list->end(), random);
+  }
+  return out;
+}
 
 /// A sheet of 5 mm elements, stretched by 0.5 % and held along its edges, with a smooth speed out
 /// of its plane: taut, moving, and far from the tiny numbers that slow a processor down.
@@ -44,7 +62,11 @@ template <class T, crossbeam::CellPrice Price = crossbeam::CellPrice::followed>
 CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options) {
   using R = real_t<T>;
   const double edge = 5, width = edge * sheet.nx, length = edge * sheet.ny, prestretch = 1.005;
-  const auto mesh = crossbeam::rectangle(width, length, sheet.nx, sheet.ny);
+  auto mesh = crossbeam::rectangle(width, length, sheet.nx, sheet.ny);
+  if (options.unstructured) {
+    mesh = crossbeam::renumbered(mesh, shuffled(mesh));
+    mesh = crossbeam::renumbered(mesh, crossbeam::number_by_levels(mesh));
+  }
   std::vector<crossbeam::NodeConstraint> held;
   for (int n = 0; n < mesh.node_count; ++n) {
     const auto X = mesh.nodes.get(n);
@@ -85,16 +107,21 @@ CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options)
 
 /// The sheet is set up at the first of a benchmark's repetitions and keeps vibrating in the others.
 template <class T>
-void register_step(const Sheet& sheet, const std::string& what, const Options& options) {
+void register_step(const Sheet& sheet, const std::string& what, const Options& options,
+                   int threads = 0) {
   const std::string name =
       "step/" + std::to_string(sheet.elements()) + "/" + what + "/" + number_name<T>();
   const auto integrator = std::make_shared<std::unique_ptr<CentralDifference<T>>>();
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-    if (!*integrator)
-      *integrator = std::make_unique<CentralDifference<T>>(vibrating_sheet<T>(sheet, options));
-    for (auto _ : state) (*integrator)->step();
-    report(state, sheet.elements(), "time_per_element_step");
-  })->Unit(benchmark::kMicrosecond);
+  auto* registered =
+      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+        if (!*integrator)
+          *integrator = std::make_unique<CentralDifference<T>>(vibrating_sheet<T>(sheet, options));
+        if (threads > 0) (*integrator)->set_threads(threads);
+        for (auto _ : state) (*integrator)->step();
+        report(state, sheet.elements(), "time_per_element_step");
+      });
+  registered->Unit(benchmark::kMicrosecond);
+  if (threads > 0) registered->UseRealTime();
 }
 
 template <class T>
@@ -116,6 +143,10 @@ void register_options(const Sheet& sheet) {
     register_options<NativePack<double>>(sheet);
     register_options<NativePack<float>>(sheet);
   }
+  register_step<NativePack<double>>(medium, "unstructured", {.unstructured = true});
+  register_step<NativePack<double>>(Sheet{1050, 1050}, "full", {});
+  for (const int threads : {1, 2})
+    register_step<NativePack<double>>(large, std::to_string(threads) + "_threads", {}, threads);
   for (const char* what : {"full", "bare"}) {
     const bool full = std::string(what) == "full";
     const Options options{.bending = full, .viscosity = full, .hourglass = full};

@@ -30,7 +30,7 @@ import sys
 #   spread     largest / smallest TIME of all that match `above`; a group in the expression is the
 #              number of elements, and `range` its least and largest: both have to be there
 
-GAUSS_POINT = "gauss_point/forces/constant_shear/3_sweeps/"
+GAUSS_POINT = "gauss_point/forces/constant_shear/followed/"
 WARM_PAPER = "gauss_point/forces/paper_inverse_2x2_warm/converged/double"
 
 TARGETS = [
@@ -57,11 +57,11 @@ TARGETS = [
     {"id": "T3d", "what": "Time per element from 1 300 to 1.1 million elements, largest / smallest",
      "kind": "spread", "above": r"step/(\d+)/full/pack_double", "range": [1300, 1100000],
      "sense": "upper", "target": 1.4},
-    {"id": "T4a", "what": "Double dome, 5 mm, speed 2 m/s, double [s]",
-     "kind": "seconds", "above": "step/double_dome/5_mm/pack_double",
+    {"id": "T4a", "what": "Double dome, 5 mm, speed 2 m/s, axial scaling 25, double [s]",
+     "kind": "seconds", "above": "step/double_dome/5_mm/axial_scaling_25/pack_double",
      "sense": "upper", "target": 0.5},
-    {"id": "T4b", "what": "Double dome, 5 mm, speed 2 m/s, float [s]",
-     "kind": "seconds", "above": "step/double_dome/5_mm/pack_float",
+    {"id": "T4b", "what": "Double dome, 5 mm, speed 2 m/s, axial scaling 25, float [s]",
+     "kind": "seconds", "above": "step/double_dome/5_mm/axial_scaling_25/pack_float",
      "sense": "upper", "target": 0.3},
     {"id": "T4c", "what": "Double dome, 2.5 mm, speed 1 m/s, double [s]",
      "kind": "seconds", "above": None, "sense": "upper", "target": 8},
@@ -71,11 +71,14 @@ TARGETS = [
     {"id": "T5b", "what": "Step: options at run time / as compile-time policies",
      "kind": "ratio", "above": None, "below": None, "sense": "upper", "target": 1.07},
     {"id": "T5c", "what": "Step with contact: without / with culling by classes",
-     "kind": "ratio", "above": None, "below": None, "sense": "lower", "target": 1.25},
+     "kind": "ratio", "above": "step/double_dome/10_mm/no_culling/pack_double",
+     "below": "step/double_dome/10_mm/pack_double", "sense": "lower", "target": 1.25},
     {"id": "T6", "what": "Two threads, 100 000 elements or more: faster than one",
-     "kind": "real_ratio", "above": None, "below": None, "sense": "lower", "target": 1.7},
+     "kind": "real_ratio", "above": "step/130000/1_threads/pack_double/real_time",
+     "below": "step/130000/2_threads/pack_double/real_time", "sense": "lower", "target": 1.7},
     {"id": "T7", "what": "Unstructured / structured mesh",
-     "kind": "ratio", "above": None, "below": None, "sense": "upper", "target": 2.2},
+     "kind": "ratio", "above": "step/20000/unstructured/pack_double",
+     "below": "step/20000/full/pack_double", "sense": "upper", "target": 2.2},
 ]
 
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}

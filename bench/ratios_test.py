@@ -110,8 +110,8 @@ class Judge(unittest.TestCase):
     def test_the_gauss_point_is_compared_with_the_warm_yardstick(self):
         results = ratios.medians(
             rows("gauss_point/forces/paper_inverse_2x2_warm/converged/double", 600e-9) +
-            rows("gauss_point/forces/constant_shear/3_sweeps/pack_double", 20e-9) +
-            rows("gauss_point/forces/constant_shear/3_sweeps/pack_float", 8e-9) +
+            rows("gauss_point/forces/constant_shear/followed/pack_double", 20e-9) +
+            rows("gauss_point/forces/constant_shear/followed/pack_float", 8e-9) +
             rows("gauss_point/corner_forces/measured_shear/3_sweeps/pack_double", 30e-9,
                  share_of_peak=0.51))
         entries = {entry["id"]: entry for entry in ratios.judge(results)}

@@ -77,7 +77,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
 
   void add_forces(NodalState<R>& state, double dt) override {
     const int stages = short_.empty() ? (long_.empty() ? 0 : long_[0].stages()) : short_[0].stages();
-    for (int stage = 0; stage < stages; ++stage) add_forces(state, dt, stage);
+    for (int stage = 0; stage < stages; ++stage) add_stage(state, dt, stage);
   }
   [[nodiscard]] int bandwidth() const override {
     int widest = 0;
@@ -89,7 +89,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     for (auto& group : short_) group.arrange(level_start);
     for (auto& group : long_) group.arrange(level_start);
   }
-  void add_forces(NodalState<R>& state, double, int stage) override {
+  void add_stage(NodalState<R>& state, double, int stage) override {
     for (const auto& group : short_) group.add_forces(state, stage);
     for (const auto& group : long_) group.add_forces(state, stage);
   }

@@ -181,7 +181,7 @@ class CentralDifference {
     model_.clear_forces(level_start_[level], last ? model_.padded_count() : level_start_[level + 1]);
   }
   void add_internal_forces(int level) {
-    for (const auto& b : model_.blocks) b->add_forces(model_.state, dt_, level);
+    for (const auto& b : model_.blocks) b->add_stage(model_.state, dt_, level);
   }
   [[nodiscard]] typename ToolContact<R>::Part part(int level) const {
     return {level_start_[level], level_start_[level + 1], level};

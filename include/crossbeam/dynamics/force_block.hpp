@@ -51,7 +51,7 @@ class ForceBlock {
   virtual void arrange(const std::vector<int>& /*level_start*/) {}
   virtual void begin_step(const NodalState<R>&) {}
   /// Stages that are two or more apart may run at the same time, tag [S-5].
-  virtual void add_forces(NodalState<R>& state, double dt, int stage) {
+  virtual void add_stage(NodalState<R>& state, double dt, int stage) {
     if (stage == 0) add_forces(state, dt);
   }
   /// @}

@@ -108,10 +108,10 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
 
   void add_forces(NodalState<R>& state, double dt) override {
     begin_step(state);
-    for (int stage = 0; stage < batches_.stages(); ++stage) add_forces(state, dt, stage);
+    for (int stage = 0; stage < batches_.stages(); ++stage) add_stage(state, dt, stage);
   }
 
-  void add_forces(NodalState<R>& state, double dt, int stage) override {
+  void add_stage(NodalState<R>& state, double dt, int stage) override {
     if (viscosity_)
       sweep<true>(state, dt, stage);
     else
