@@ -287,14 +287,14 @@ TEST_CASE("V-MESH-04 membrane forces on the new numbers, carried back, are those
     for (int n = 0; n < m.node_count; ++n) {
       old_state.x.set(n, 1.05 * m.nodes.get(n) + vec3(random.vector(0.03)));  // taut
       old_state.v.set(n, vec3(random.vector(2)));
-      old_state.v_centre.set(n, vec3(random.vector(2)));
+      old_state.v_predicted.set(n, vec3(random.vector(2)));
     }
     const Numbering numbering = number_by_levels(m);
     const Mesh<Corners> now = renumbered(m, numbering);
     NodalState<double> new_state(now, areal_mass);
     new_state.x = to_new(old_state.x, numbering.node);
     new_state.v = to_new(old_state.v, numbering.node);
-    new_state.v_centre = to_new(old_state.v_centre, numbering.node);
+    new_state.v_predicted = to_new(old_state.v_predicted, numbering.node);
 
     old_state = forces<T, Element>(m, old_state);
     const auto back = to_old(forces<T, Element>(now, new_state).f, numbering.node);
