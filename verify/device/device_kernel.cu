@@ -42,7 +42,7 @@ template <class R, class Element, class Law>
 CROSSBEAM_INLINE Output<R, Element> element_forces(const Law& law, const StadiumRing<R>& ring,
                                                    const Input<R, Element>& input) {
   constexpr int K = Element::vectors, M = Element::membrane_vectors;
-  Vec3<R> D[K], force[K];
+  Vec3<R> D[K], force[K]{};
   Element::relative_vectors(input.corner, D);
   for (int p = 0; p < Element::points; ++p) {
     const PointKinematics<R, M, K> kinematics(D, input.point[p]);

@@ -119,7 +119,7 @@ void compare_elements(const Law& law, Random& random, int samples) {
       point.t2[1].set(i, S(random(0.099, 0.101)));
       point.weight.set(i, S(random(20, 30)));
     }
-    Vec3<P> D[K], R[K], f[4];
+    Vec3<P> D[K], R[K]{}, f[4];
     Element::relative_vectors(x, D);
     const PointKinematics<P, M, K> kinematics(D, point);
     const auto state = law.evaluate(kinematics.strain(law.reference().cosine));
@@ -131,7 +131,7 @@ void compare_elements(const Law& law, Random& random, int samples) {
 
     for (int i = 0; i < n; ++i) {
       const auto lane = [i](const Vec3<P>& a) { return Vec3<S>{a.x[i], a.y[i], a.z[i]}; };
-      Vec3<S> xs[4], Ds[K], Rs[K], fs[4];
+      Vec3<S> xs[4], Ds[K], Rs[K]{}, fs[4];
       PointLanes<S, M> ps;
       for (int a = 0; a < 4; ++a) xs[a] = lane(x[a]);
       for (int k = 0; k < M; ++k) {

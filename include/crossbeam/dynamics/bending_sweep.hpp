@@ -355,6 +355,10 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     template <bool Mirrored>
     void sweep_general(NodalState<R>& state, int first_run, int last_run) const {
       RunForces<Columns, T> forces;
+      const T zero(R(0));
+      for (int k = used_; k < Columns; ++k)  // columns without a node have no force
+        for (int i = 0; i < IndexBatches<Columns, T>::run_capacity; i += lanes)
+          forces.put(k, i, {zero, zero, zero});
       for (int r = first_run; r < last_run; ++r) {
         const auto& run = batches_.run(r);
         if (run.contiguous && constants_.is_uniform()) continue;
