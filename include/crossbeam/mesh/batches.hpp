@@ -233,6 +233,21 @@ class IndexBatches {
   std::vector<int> stage_runs_;  // first run of every stage, and their count
 };
 
+namespace detail {
+
+/// to[lane] -= value for the first `count` lanes. The nodes behind may be another thread's: they are
+/// not even written with what they had.
+template <class T>
+CROSSBEAM_INLINE void subtract_lanes(real_t<T>* to, const T& value, int count) {
+  if (count >= lanes_v<T>) {
+    (T::load(to) - value).store(to);
+    return;
+  }
+  for (int lane = 0; lane < count; ++lane) to[lane] -= value[lane];
+}
+
+}  // namespace detail
+
 /// Forces of one contiguous run, column by column, until the nodes get them: a node that is a corner
 /// of several tuples is then read and written once, and no load overtakes a store that it overlaps.
 template <int Columns, class T>
@@ -296,8 +311,7 @@ class RunForces {
       unrolled<3>([&](auto component) CROSSBEAM_INLINE_LAMBDA {
         T sum = T::load(from[0] + component * size + i);
         for (int k = 1; k < many; ++k) sum = sum + T::load(from[k] + component * size + i);
-        R* const to = out[component] + i;
-        (T::load(to) - sum).store(to);
+        detail::subtract_lanes(out[component] + i, sum, count - i);
       });
   }
 
@@ -364,8 +378,7 @@ class RunVectors {
         T sum = T(w[run.column[begin]]) * T::load(from[0] + component * size + i);
         for (int k = 1; k < many; ++k)
           sum = sum + T(w[run.column[begin + k]]) * T::load(from[k] + component * size + i);
-        R* const to = out[component] + i;
-        (T::load(to) - sum).store(to);
+        detail::subtract_lanes(out[component] + i, sum, count - i);
       });
   }
 
