@@ -246,6 +246,26 @@ CROSSBEAM_INLINE void subtract_lanes(real_t<T>* to, const T& value, int count) {
   for (int lane = 0; lane < count; ++lane) to[lane] -= value[lane];
 }
 
+/// Calls body(columns, where a's components begin, run, first column, nodes, columns) for every line of
+/// a run, with the number of columns as an integral constant: up to three, or 0 for more.
+template <class R, class Run, std::size_t Columns, class Body>
+CROSSBEAM_INLINE void for_each_line(NodeVectors<R>& a, const Run& run,
+                                    const std::array<int, Columns>& first, const Body& body) {
+  int k = 0;
+  for (int line = 0; line < run.lines; ++line) {
+    const int begin = k;
+    k = run.line_end[line];
+    const int base = first[run.column[begin]], count = run.tuples + run.shift[k - 1];
+    R* const out[3] = {a.x.data() + base, a.y.data() + base, a.z.data() + base};
+    switch (k - begin) {
+      case 1: body(std::integral_constant<int, 1>{}, out, run, begin, count, 1); break;
+      case 2: body(std::integral_constant<int, 2>{}, out, run, begin, count, 2); break;
+      case 3: body(std::integral_constant<int, 3>{}, out, run, begin, count, 3); break;
+      default: body(std::integral_constant<int, 0>{}, out, run, begin, count, k - begin);
+    }
+  }
+}
+
 }  // namespace detail
 
 /// Forces of one contiguous run, column by column, until the nodes get them: a node that is a corner
@@ -278,19 +298,9 @@ class RunForces {
     for (auto& column : force_)
       for (auto& component : column)
         for (int i = 0; i < back; i += lanes) zero.store(component + front + end + i);
-    int k = 0;
-    for (int line = 0; line < run.lines; ++line) {
-      const int begin = k;
-      k = run.line_end[line];
-      const int base = first[run.column[begin]], count = run.tuples + run.shift[k - 1];
-      R* const out[3] = {a.x.data() + base, a.y.data() + base, a.z.data() + base};
-      switch (k - begin) {
-        case 1: line_of<1>(out, run, begin, count, 1); break;
-        case 2: line_of<2>(out, run, begin, count, 2); break;
-        case 3: line_of<3>(out, run, begin, count, 3); break;
-        default: line_of<0>(out, run, begin, count, k - begin);
-      }
-    }
+    detail::for_each_line(a, run, first, [&](auto columns, auto&&... line) CROSSBEAM_INLINE_LAMBDA {
+      line_of<columns>(line...);
+    });
   }
 
  private:
@@ -347,18 +357,9 @@ class RunVectors {
     const int end = (run.tuples + lanes - 1) / lanes * lanes;
     for (auto& component : vector_)
       for (int i = 0; i < back; i += lanes) zero.store(component + front + end + i);
-    int k = 0;
-    for (int line = 0; line < run.lines; ++line) {
-      const int begin = k;
-      k = run.line_end[line];
-      const int base = first[run.column[begin]], count = run.tuples + run.shift[k - 1];
-      R* const out[3] = {a.x.data() + base, a.y.data() + base, a.z.data() + base};
-      switch (k - begin) {
-        case 1: line_of<1>(out, run, begin, count, 1, weight); break;
-        case 3: line_of<3>(out, run, begin, count, 3, weight); break;
-        default: line_of<0>(out, run, begin, count, k - begin, weight);
-      }
-    }
+    detail::for_each_line(a, run, first, [&](auto columns, auto&&... line) CROSSBEAM_INLINE_LAMBDA {
+      line_of<columns>(line..., weight);
+    });
   }
 
  private:
