@@ -86,7 +86,18 @@ CROSSBEAM_INLINE T minimum(const T& a, const T& b) {
 }
 template <class T>
 CROSSBEAM_INLINE T magnitude(const T& a) {
-  return select(a < T(0), -a, a);
+  if constexpr (std::is_floating_point_v<T>)
+    return std::abs(a);
+  else
+    return select(a < T(0), -a, a);
+}
+/// a times the sign of b.
+template <class T>
+CROSSBEAM_INLINE T times_sign(const T& a, const T& b) {
+  if constexpr (std::is_floating_point_v<T>)
+    return std::signbit(b) ? -a : a;
+  else
+    return select(b < T(0), -a, a);
 }
 template <class T>
 CROSSBEAM_INLINE T square(const T& a) {

@@ -7,6 +7,7 @@
 #include "crossbeam/base/scalar.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #if defined(__SSE2__)
@@ -158,6 +159,11 @@ struct Pack {
 
   CROSSBEAM_HOST_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
 
+  CROSSBEAM_HOST_INLINE friend Pack magnitude(Pack a) { return Vector(Bits(a.v) & ~sign_bits()); }
+  CROSSBEAM_HOST_INLINE friend Pack times_sign(Pack a, Pack b) {
+    return Vector(Bits(a.v) ^ (Bits(b.v) & sign_bits()));
+  }
+
   /// Square root by the vector unit itself, so that no compiler flag is needed. (The masked forms:
   /// the plain 512-bit ones read an undefined register in g++ 12's headers and warn.)
   CROSSBEAM_HOST_INLINE friend Pack sqrt(Pack a) {
@@ -213,6 +219,12 @@ struct Pack {
       return r;
     }(std::make_integer_sequence<int, N - 1>());
   }
+
+ private:
+  using Bits = typename Mask::Vector;
+  CROSSBEAM_HOST_INLINE static Bits sign_bits() {
+    return Bits{} | std::numeric_limits<typename Mask::Integer>::min();
+  }
 };
 
 /// One lane is a plain number: g++ 12 miscompiles masks of one-element vectors from -O2 on (a
@@ -264,6 +276,10 @@ struct Pack<S, 1> {
   CROSSBEAM_HOST_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
 
   CROSSBEAM_HOST_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a : b; }
+  CROSSBEAM_HOST_INLINE friend Pack magnitude(Pack a) { return std::abs(a.v); }
+  CROSSBEAM_HOST_INLINE friend Pack times_sign(Pack a, Pack b) {
+    return std::signbit(b.v) ? -a.v : a.v;
+  }
   CROSSBEAM_HOST_INLINE friend Pack sqrt(Pack a) { return std::sqrt(a.v); }
   template <class Op>
   CROSSBEAM_HOST_INLINE friend Pack per_lane(Pack a, Op op) {

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <compare>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace crossbeam {
@@ -246,8 +247,6 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
             return largest;
           },
           [this](int b) { return batches_[b].active; });
-      for (int b = 0; b < batches_.size(); ++b)
-        has_gathered_ = has_gathered_ || batches_[b].gather_row >= 0;
       for (int k = 0; k < used_ && batches_.size() > 0; ++k) {
         const R w = constants_.at(0, k, 0);
         weights_[0][k] = sign_x_[k] * w;
@@ -273,7 +272,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       double sum = 0;
       const T zero(R(0));
       for (int b = 0; b < batches_.size(); ++b) {
-        const Vec3<T> kappa = curvature<true>(state, b);
+        const Vec3<T> kappa = curvature<true>(
+            [&](int k) { return batches_.gather(state.x, batches_[b], k); }, constants_.data(b));
         const T energy = stiffness_.load(b, 0) * dot(kappa, kappa);
         sum += 0.5 * static_cast<double>(
                          lane_sum(select(batches_.active(batches_[b]), energy, zero)));
@@ -306,80 +306,68 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         return v;
     }
 
-    template <bool Mirrored>
-    CROSSBEAM_INLINE Vec3<T> curvature(const NodalState<R>& state, int b) const {
-      const T zero(R(0));
-      Vec3<T> kappa{zero, zero, zero};
-      if constexpr (Columns == 3) {  // unused columns have no weight
-        Vec3<T> x[Columns];
-        batches_.gather_all(state.x, batches_[b], x);
-        unrolled<Columns>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
-          kappa = kappa + constants_.load(b, k) * signed_copy<Mirrored>(x[k], k);
-        });
-      } else {
-        for (int k = 0; k < used_; ++k)
-          kappa = kappa + constants_.load(b, k) *
-                              signed_copy<Mirrored>(batches_.gather(state.x, batches_[b], k), k);
-      }
+    /// Second difference of the positions of a tuple along its yarn.
+    /// @param x(k) column k of the tuple; @param weight where the weights begin
+    template <bool Mirrored, class Position>
+    CROSSBEAM_INLINE Vec3<T> curvature(const Position& x, const R* weight) const {
+      const auto term = [&](int k) CROSSBEAM_INLINE_LAMBDA {
+        return T::load(weight + k * lanes) * signed_copy<Mirrored>(x(k), k);
+      };
+      Vec3<T> kappa = term(0);
+      if constexpr (Columns == 3)  // unused columns have no weight
+        unrolled<Columns - 1>([&](auto k) CROSSBEAM_INLINE_LAMBDA { kappa = kappa + term(k + 1); });
+      else
+        for (int k = 1; k < used_; ++k) kappa = kappa + term(k);
       return kappa;
     }
 
     template <bool Mirrored>
-    CROSSBEAM_INLINE Vec3<T> moment(const NodalState<R>& state, int b) const {
-      Vec3<T> m = stiffness_.load(b, 0) * curvature<Mirrored>(state, b);
-      if (batches_[b].active < lanes) {
-        const auto active = batches_.active(batches_[b]);
-        const T zero(R(0));
-        m = {select(active, m.x, zero), select(active, m.y, zero), select(active, m.z, zero)};
-      }
-      return m;
-    }
-
-    template <bool Mirrored>
     void sweep(NodalState<R>& state, int first_run, int last_run) const {
-      if (constants_.is_uniform()) {
-        RunVectors<Columns, T> moments;
-        for (int r = first_run; r < last_run; ++r) {
-          const auto& run = batches_.run(r);
-          if (!run.contiguous) continue;
-          for (int i = 0; i < run.batches; ++i)
-            moments.put(i * lanes, moment<Mirrored>(state, run.first_batch + i));
-          moments.subtract_from(state.f, run, batches_[run.first_batch].first, weights_);
-        }
-      }
-      if (!constants_.is_uniform() || has_gathered_)
-        sweep_general<Mirrored>(state, first_run, last_run);
-    }
-
-    /// With weights of every stencil's own, or nodes all over the place.
-    template <bool Mirrored>
-    void sweep_general(NodalState<R>& state, int first_run, int last_run) const {
-      RunForces<Columns, T> forces;
-      const T zero(R(0));
-      for (int k = used_; k < Columns; ++k)  // columns without a node have no force
-        for (int i = 0; i < IndexBatches<Columns, T>::run_capacity; i += lanes)
-          forces.put(k, i, {zero, zero, zero});
+      typename IndexBatches<Columns, T>::Gathered gathered;
+      RunVectors<1, Columns, T> moments;
+      // With weights of every stencil's own, or nodes all over the place.
+      std::optional<RunVectors<Columns, Columns, T>> forces;
       for (int r = first_run; r < last_run; ++r) {
         const auto& run = batches_.run(r);
-        if (run.contiguous && constants_.is_uniform()) continue;
-        for (int i = 0; i < run.batches; ++i) {
-          const int b = run.first_batch + i;
-          const Vec3<T> m = moment<Mirrored>(state, b);
-          for (int k = 0; k < used_; ++k) {
-            const Vec3<T> f = constants_.load(b, k) * signed_copy<Mirrored>(m, k);
-            if (run.contiguous)
-              forces.put(k, i * lanes, f);
-            else
-              batches_.subtract(state.f, batches_[b], k, f);
+        const auto x = batches_.view(state.x, run, gathered);
+        const R *weight = constants_.data(run.first_batch),
+                *stiffness = stiffness_.data(run.first_batch);
+        const std::size_t stride = constants_.stride();
+        const int end = run.batches * lanes;
+        const bool alike = stride == 0 && run.contiguous;
+        if (!alike && !forces) clear_unused(forces.emplace());
+        for (int i = 0; i < end; i += lanes, weight += stride, stiffness += lanes) {
+          const T zero(R(0));
+          Vec3<T> m = T::load(stiffness) *
+                      curvature<Mirrored>([&](int k) CROSSBEAM_INLINE_LAMBDA { return x.load(k, i); },
+                                          weight);
+          if (i + lanes > run.tuples) {
+            const auto active = batches_.active(batches_[run.first_batch + i / lanes]);
+            m = {select(active, m.x, zero), select(active, m.y, zero), select(active, m.z, zero)};
           }
+          if (alike)
+            moments.put(0, i, m);
+          else
+            for (int k = 0; k < used_; ++k)
+              forces->put(k, i, T::load(weight + k * lanes) * signed_copy<Mirrored>(m, k));
         }
-        if (run.contiguous)
-          forces.subtract_from(state.f, run, batches_[run.first_batch].first);
+        if (alike)
+          moments.subtract_from(state.f, batches_, run, weights_);
+        else
+          forces->subtract_from(state.f, batches_, run);
       }
+    }
+
+    /// Columns without a node have no force.
+    void clear_unused(RunVectors<Columns, Columns, T>& forces) const {
+      const T zero(R(0));
+      for (int k = used_; k < Columns; ++k)
+        for (int i = 0; i < IndexBatches<Columns, T>::run_capacity; i += lanes)
+          forces.put(k, i, {zero, zero, zero});
     }
 
     int used_ = 0;
-    bool mirrored_ = false, has_gathered_ = false;
+    bool mirrored_ = false;
     std::array<R, Columns> sign_x_{}, sign_y_{};
     std::array<R, Columns> weights_[3]{};  // with their signs, of uniform stencils
     IndexBatches<Columns, T> batches_;

@@ -267,14 +267,20 @@ class CentralDifference {
     const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
     const T dt(static_cast<R>(dt_)), half(R(0.5)), three_halves(R(1.5));
     T fastest(R(0)), sum(R(0));
-    for (int n = level_start_[level]; n < level_start_[level + 1]; n += lanes) {
-      const Vec3<T> before = load<T>(model_.state.v, n);
-      Vec3<T> v = keep * before + push * acceleration(n);
-      if (is_constrained_[n / lanes]) v = constrained(n, v);
-      store(model_.state.v, n, v);
-      store(model_.state.v_predicted, n, three_halves * v - half * before);
-      store(model_.state.x, n, load<T>(model_.state.x, n) + dt * v);
-      const T speed_squared = dot(v, v);
+    NodalState<R>& state = model_.state;
+    const NodePointers<R> x(state.x), v(state.v), predicted(state.v_predicted), f(state.f);
+    const R* const inverse_mass = state.inverse_mass.data();
+    const char* const is_constrained = is_constrained_.data();
+    const std::ptrdiff_t first = level_start_[level], last = level_start_[level + 1];
+    for (std::ptrdiff_t n = first, pack = first / lanes; n < last; n += lanes, ++pack) {
+      const Vec3<T> before = v.template load<T>(n);
+      Vec3<T> after =
+          keep * before + (push * T::load(inverse_mass + n)) * f.template load<T>(n);
+      if (is_constrained[pack]) after = constrained(static_cast<int>(n), after);
+      v.store(n, after);
+      predicted.store(n, three_halves * after - half * before);
+      x.store(n, x.template load<T>(n) + dt * after);
+      const T speed_squared = dot(after, after);
       fastest = maximum(fastest, speed_squared);
       sum = sum + speed_squared;  // a NaN or an overflow stays in the sum
     }

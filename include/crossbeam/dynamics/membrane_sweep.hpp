@@ -299,13 +299,21 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     long long fallbacks = 0;
   };
 
+  using Batches = IndexBatches<corners, T>;
+  using Run = typename Batches::Run;
+  using View = typename Batches::View;
+
   /// What the loops over one run hand on to each other: it stays in the first-level cache.
   struct Work {
-    static constexpr int size = IndexBatches<corners, T>::run_capacity;
+    static constexpr int size = Batches::run_capacity;
     struct Buffer {
       alignas(64) R number[size];
       CROSSBEAM_INLINE T load(int i) const { return T::load(number + i); }
       CROSSBEAM_INLINE void store(int i, const T& value) { value.store(number + i); }
+      template <class Mask>
+      CROSSBEAM_INLINE void rest(int i, const Mask& active) {
+        store(i, select(active, load(i), T(R(0))));
+      }
     };
     struct Vectors {
       Buffer x, y, z;
@@ -323,104 +331,143 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     struct {
       Buffer g, D, F, k_Lh;
     } yarn[2];
-    RunForces<corners, T> corner;
+    RunVectors<corners, corners, T> corner;
+    typename Batches::Gathered gathered;
+
+    /// Lanes without a tuple are kept at rest, whatever nodes they read: without strain, and with fibre
+    /// vectors of no length they exert no force and lose no power.
+    /// @param i place of lane 0 in the run; @param active the lanes with a tuple
+    template <class Mask>
+    void rest(int i, const Mask& active) {
+      for (Vectors* v : {&hourglass, &f1, &f2})
+        for (Buffer* component : {&v->x, &v->y, &v->z}) component->rest(i, active);
+      for (Buffer* strain : {&b11, &b22, &b12}) strain->rest(i, active);
+    }
   };
 
   /// The run in short loops: one body for all of it would be a single chain of dependent roots and
   /// divisions, too long for the processor to overlap two batches, tag [S-4].
   template <bool Viscous>
-  CROSSBEAM_INLINE void run_forces(const Law& law, NodalState<R>& state,
-                                   const typename IndexBatches<corners, T>::Run& run, Work& work,
+  CROSSBEAM_INLINE void run_forces(const Law& law, NodalState<R>& state, const Run& run, Work& work,
                                    T& power, StageSums& sums) {
+    const int end = run.batches * lanes;
     for (int p = 0; p < Element::points; ++p) {
-      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
-        strain_point(state, run.first_batch + k, p, i, work);
+      if (p == 0)
+        strains<true>(batches_.view(state.x, run, work.gathered), run, p, work);
+      else
+        strains<false>({}, run, p, work);
+      if (run.tuples < end)
+        work.rest(end - lanes, batches_.active(batches_[run.first_batch + run.batches - 1]));
       stresses(law, run, p, work, sums);
-      if constexpr (Viscous) viscous_stresses(state, run, p, work, power);
-      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
-        collect_point(state, run, k, p, i, work);
+      if constexpr (Viscous)
+        viscous_stresses(batches_.view(state.v_predicted, run, work.gathered), run, p, work, power);
+      collect_forces(run, p, work);
     }
-    if (run.contiguous)
-      work.corner.subtract_from(state.f, run, batches_[run.first_batch].first);
+    work.corner.subtract_from(state.f, batches_, run);
+  }
+
+  /// Constants of the batches of a run at one point.
+  struct Constants {
+    const R* at;
+    std::size_t stride;
+    CROSSBEAM_INLINE void next() { at += stride; }
+    CROSSBEAM_INLINE T load(int component) const { return T::load(at + component * lanes); }
+    CROSSBEAM_INLINE PointLanes<T, M> point() const {
+      PointLanes<T, M> out;
+      unrolled<M>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
+        out.t1[k] = load(k);
+        out.t2[k] = load(M + k);
+      });
+      out.weight = load(2 * M);
+      return out;
+    }
+    [[nodiscard]] CROSSBEAM_INLINE T viscosity() const { return load(2 * M + 1); }
+  };
+  [[nodiscard]] CROSSBEAM_INLINE Constants constants(const Run& run, int p) const {
+    return {constants_.data(run.first_batch) + p * point_size * lanes, constants_.stride()};
   }
 
   /// Fibre vectors and strains; at the first point also what all points share.
-  CROSSBEAM_INLINE void strain_point(const NodalState<R>& state, int b, int p, int i, Work& work) {
-    Vec3<T> D[K];
-    if (p == 0) {
-      relative_vectors(state.x, batches_[b], D);
-      if constexpr (Element::has_hourglass) {
-        if (hourglass_ > R(0)) work.hourglass.store(i, hourglass_stiffness(b) * hourglass_vector(b, D));
-      } else if constexpr (Element::points > 1) {
-        unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
-          work.D[v].store(i, D[v]);
-        });
+  template <bool First>
+  CROSSBEAM_INLINE void strains(const View& x, const Run& run, int p, Work& work) const {
+    const int end = run.batches * lanes;
+    const R cosine = law_.reference().cosine;
+    const T hourglass(hourglass_);
+    const bool has_hourglass = hourglass_ > R(0);
+    Constants c = constants(run, p);
+    for (int i = 0; i < end; i += lanes, c.next()) {
+      Vec3<T> D[K];
+      if constexpr (First) {
+        Vec3<T> corner[corners];
+        x.load_all(i, corner);
+        Element::relative_vectors(corner, D);
+        if constexpr (Element::has_hourglass) {
+          if (has_hourglass) {
+            Vec3<T> q = D[2];
+            if (skewed_)
+              q = q - (c.load(hourglass_at) * D[0] + c.load(hourglass_at + 1) * D[1]);
+            work.hourglass.store(i, hourglass * c.load(hourglass_at + 2) * q);
+          }
+        } else if constexpr (Element::points > 1) {
+          unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA { work.D[v].store(i, D[v]); });
+        }
+      } else {
+        unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA { D[v] = work.D[v].load(i); });
       }
-    } else {
-      unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
-        D[v] = work.D[v].load(i);
-      });
+      const PointKinematics<T, M, K> kinematics(D, c.point());
+      const FibreStrain<T> beta = kinematics.strain(cosine);
+      work.f1.store(i, kinematics.f1);
+      work.f2.store(i, kinematics.f2);
+      work.b11.store(i, beta.b11);
+      work.b22.store(i, beta.b22);
+      work.b12.store(i, beta.b12);
     }
-    const PointKinematics<T, M, K> kinematics(D, load_point(b, p));
-    const FibreStrain<T> beta = strain(kinematics, batches_[b]);
-    work.f1.store(i, kinematics.f1);
-    work.f2.store(i, kinematics.f2);
-    work.b11.store(i, beta.b11);
-    work.b22.store(i, beta.b22);
-    work.b12.store(i, beta.b12);
   }
 
   /// Adds the point's generalised forces, and after the last point gives them to the corners.
-  CROSSBEAM_INLINE void collect_point(NodalState<R>& state,
-                                      const typename IndexBatches<corners, T>::Run& run, int k,
-                                      int p, int i, Work& work) {
-    const int b = run.first_batch + k;
-    const T zero(R(0));
-    Vec3<T> force[K];
-    unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
-      force[v] = p == 0 ? Vec3<T>{zero, zero, zero} : work.force[v].load(i);
-    });
-    add_point_forces(PointKinematics<T, M, K>(work.f1.load(i), work.f2.load(i)),
-                     {work.m11.load(i), work.m22.load(i), work.m12.load(i)}, load_point(b, p),
-                     force);
-    if (p + 1 < Element::points) {
-      unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
-        work.force[v].store(i, force[v]);
-      });
-      return;
-    }
-    if constexpr (Element::has_hourglass)
-      if (hourglass_ > R(0)) {
-        const Vec3<T> q = work.hourglass.load(i);
-        force[0] = force[0] - constants_.load(b, hourglass_at) * q;
-        force[1] = force[1] - constants_.load(b, hourglass_at + 1) * q;
-        force[2] = force[2] + q;
+  CROSSBEAM_INLINE void collect_forces(const Run& run, int p, Work& work) const {
+    const int end = run.batches * lanes;
+    const bool has_hourglass = Element::has_hourglass && hourglass_ > R(0);
+    Constants c = constants(run, p);
+    for (int i = 0; i < end; i += lanes, c.next()) {
+      const PointKinematics<T, M, K> kinematics(work.f1.load(i), work.f2.load(i));
+      const FibreStress<T> m{work.m11.load(i), work.m22.load(i), work.m12.load(i)};
+      Vec3<T> force[K];
+      point_forces(kinematics, m, c.point(), force);
+      if constexpr (Element::points > 1) {
+        if (p > 0)
+          unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
+            force[v] = work.force[v].load(i) + force[v];
+          });
+        if (p + 1 < Element::points) {
+          unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA { work.force[v].store(i, force[v]); });
+          continue;
+        }
       }
-    const Batch& batch = batches_[b];
-    if (batch.active < lanes) {
-      const auto active = batches_.active(batch);
-      unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
-        force[v] = {select(active, force[v].x, zero), select(active, force[v].y, zero),
-                    select(active, force[v].z, zero)};
-      });
-    }
-    Vec3<T> corner[corners];
-    Element::corner_forces(force, corner);
-    if (run.contiguous) {
-      unrolled<corners>([&](auto a) CROSSBEAM_INLINE_LAMBDA {
-        work.corner.put(a, i, corner[a]);
-      });
-    } else {
-      unrolled<corners>([&](auto a) CROSSBEAM_INLINE_LAMBDA {
-        batches_.subtract(state.f, batch, a, corner[a]);
-      });
+      if constexpr (Element::has_hourglass) {
+        if (has_hourglass) {
+          const Vec3<T> q = work.hourglass.load(i);
+          force[2] = q;
+          if (skewed_) {
+            force[0] = force[0] - c.load(hourglass_at) * q;
+            force[1] = force[1] - c.load(hourglass_at + 1) * q;
+          }
+        } else {
+          const T zero(R(0));
+          force[2] = {zero, zero, zero};
+        }
+      }
+      Vec3<T> corner[corners];
+      Element::corner_forces(force, corner);
+      unrolled<corners>([&](auto a) CROSSBEAM_INLINE_LAMBDA { work.corner.put(a, i, corner[a]); });
     }
   }
 
-  CROSSBEAM_INLINE void stresses(const Law& law, const typename IndexBatches<corners, T>::Run& run,
-                                 int p, Work& work, [[maybe_unused]] StageSums& sums) {
+  CROSSBEAM_INLINE void stresses(const Law& law, const Run& run, int p, Work& work,
+                                 [[maybe_unused]] StageSums& sums) {
+    const int end = run.batches * lanes;
     if constexpr (follows) {
-      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+      for (int i = 0; i < end; i += lanes) {
         T u1, u2, inv1, inv2;
         law.elongate(work.b11.load(i), work.b22.load(i), u1, u2, inv1, inv2);
         work.u1.store(i, u1);
@@ -429,36 +476,38 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         work.inv2.store(i, inv2);
       }
       const auto& cell = law.cell();
+      R* const heights_begin = heights_.data(run.first_batch) + 2 * p * lanes;
+      const std::size_t stride = heights_.stride();
       for (int y = 0; y < 2; ++y) {
         const auto& yarn = y == 0 ? cell.warp() : cell.weft();
         const auto& u = y == 0 ? work.u1 : work.u2;
         auto& out = work.yarn[y];
-        for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
-          const auto at = cell.evaluate_yarn(yarn, u.load(i),
-                                             heights_.load(run.first_batch + k, 2 * p + y));
+        const R* height = heights_begin + y * lanes;
+        for (int i = 0; i < end; i += lanes, height += stride) {
+          const auto at = cell.evaluate_yarn(yarn, u.load(i), T::load(height));
           out.g.store(i, at.g);
           out.D.store(i, at.D);
           out.F.store(i, at.F);
           out.k_Lh.store(i, at.k_Lh);
         }
       }
-      const auto yarn = [&](int y, int i) {
+      const auto yarn = [&](int y, int i) CROSSBEAM_INLINE_LAMBDA {
         const auto& from = work.yarn[y];
         return FollowedYarn<T>{
             from.g.load(i), from.D.load(i), from.F.load(i), from.k_Lh.load(i)};
       };
-      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
-        const int b = run.first_batch + k;
-        CrimpHeights<T> heights{heights_.load(b, 2 * p), heights_.load(b, 2 * p + 1)};
+      R* height = heights_begin;
+      for (int i = 0; i < end; i += lanes, height += stride) {
+        CrimpHeights<T> heights{T::load(height), T::load(height + lanes)};
         T m11, m22;
         law.follow(work.u1.load(i), work.u2.load(i), work.inv1.load(i), work.inv2.load(i),
                    yarn(0, i), yarn(1, i), heights, m11, m22);
-        heights_.store(b, 2 * p, heights.w1);
-        heights_.store(b, 2 * p + 1, heights.w2);
+        heights.w1.store(height);
+        heights.w2.store(height + lanes);
         work.m11.store(i, m11);
         work.m22.store(i, m22);
       }
-      for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
+      for (int i = 0; i < end; i += lanes) {
         const FibreStress<T> m = law.with_shear(
             FibreStrain<T>{work.b11.load(i), work.b22.load(i), work.b12.load(i)},
             work.inv1.load(i), work.inv2.load(i), work.m11.load(i), work.m22.load(i));
@@ -485,25 +534,23 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   }
 
   /// [D-5]; `power` collects what it takes.
-  CROSSBEAM_INLINE void viscous_stresses(const NodalState<R>& state,
-                                         const typename IndexBatches<corners, T>::Run& run, int p,
-                                         Work& work, T& power) {
-    for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
-      const int b = run.first_batch + k;
-      const Batch& batch = batches_[b];
-      Vec3<T> rate[K];
-      relative_vectors(state.v_predicted, batch, rate);
-      const PointLanes<T, M> point = load_point(b, p);
+  CROSSBEAM_INLINE void viscous_stresses(const View& v, const Run& run, int p, Work& work,
+                                         T& power) const {
+    const int end = run.batches * lanes;
+    Constants c = constants(run, p);
+    for (int i = 0; i < end; i += lanes, c.next()) {
+      Vec3<T> corner[corners], rate[K];
+      v.load_all(i, corner);
+      Element::relative_vectors(corner, rate);
+      const PointLanes<T, M> point = c.point();
       const PointKinematics<T, M, K> rates(rate, point);
-      const T mu = viscosity_coefficient(b, p);
+      const T mu = c.viscosity();
       const T inv1 = work.inv1.load(i), inv2 = work.inv2.load(i);
       const T r1 = dot(work.f1.load(i), rates.f1) * inv1;
       const T r2 = dot(work.f2.load(i), rates.f2) * inv2;
       work.m11.store(i, work.m11.load(i) + mu * r1 * inv1);
       work.m22.store(i, work.m22.load(i) + mu * r2 * inv2);
-      T lost = point.weight * mu * (r1 * r1 + r2 * r2);
-      if (batch.active < lanes) lost = select(batches_.active(batch), lost, T(R(0)));
-      power = power + lost;
+      power = power + point.weight * mu * (r1 * r1 + r2 * r2);
     }
   }
 
@@ -538,10 +585,10 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     heights_known_ = true;
   }
 
-  CROSSBEAM_INLINE void relative_vectors(const NodeVectors<R>& x, const Batch& batch,
+  void relative_vectors(const NodeVectors<R>& x, const Batch& batch,
                                          Vec3<T> (&D)[K]) const {
     Vec3<T> corner[corners];
-    batches_.gather_all(x, batch, corner);
+    for (int a = 0; a < corners; ++a) corner[a] = batches_.gather(x, batch, a);
     Element::relative_vectors(corner, D);
   }
 
@@ -631,8 +678,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     }
     if constexpr (Element::has_hourglass) {
       const auto h = Element::hourglass(X);
-      constants_.at(b, hourglass_at, lane) = R(h.p1);
-      constants_.at(b, hourglass_at + 1, lane) = R(h.p2);
+      constexpr double rounding = 1e-11;  // of the mesh's coordinates: a parallelogram has p = 0
+      const bool skewed = std::abs(h.p1) > rounding || std::abs(h.p2) > rounding;
+      skewed_ = skewed_ || skewed;
+      constants_.at(b, hourglass_at, lane) = skewed ? R(h.p1) : R(0);
+      constants_.at(b, hourglass_at + 1, lane) = skewed ? R(h.p2) : R(0);
       constants_.at(b, hourglass_at + 2, lane) = R(h.stiffness);
     }
   }
@@ -676,6 +726,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   LaneArray<T> heights_;  // of the cells, where the law follows them
   int element_count_;
   R hourglass_{};
+  bool skewed_ = false;  // an element that is no parallelogram
   bool viscosity_ = false, started_ = false, begun_ = false, heights_known_ = false;
   double omega_squared_ = 0, damping_rate_ = 0;
   std::vector<StageSums> stage_sums_;

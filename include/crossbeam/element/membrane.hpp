@@ -52,18 +52,28 @@ struct PointKinematics {
   CROSSBEAM_INLINE PointKinematics(const Vec3<T>& warp, const Vec3<T>& weft) : f1(warp), f2(weft) {}
 };
 
-/// Adds weight * (m^{ij} f_j) t_ik to the generalised forces R_k, the derivatives of the point's
-/// energy with respect to D_k.
+/// Generalised forces weight * (m^{ij} f_j) t_ik of a point: the derivatives of its energy with respect
+/// to D_k, k < M; those of the others, which the point doesn't see, are left alone.
 template <int M, class T, int K>
-CROSSBEAM_INLINE void add_point_forces(const PointKinematics<T, M, K>& kinematics,
-                                       const FibreStress<T>& m, const PointLanes<T, M>& point,
-                                       Vec3<T> (&R)[K]) {
+CROSSBEAM_INLINE void point_forces(const PointKinematics<T, M, K>& kinematics,
+                                   const FibreStress<T>& m, const PointLanes<T, M>& point,
+                                   Vec3<T> (&R)[K]) {
   const T a11 = point.weight * m.m11, a22 = point.weight * m.m22, a12 = point.weight * m.m12;
   const Vec3<T> P1 = a11 * kinematics.f1 + a12 * kinematics.f2;
   const Vec3<T> P2 = a12 * kinematics.f1 + a22 * kinematics.f2;
   unrolled<M>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
-    R[k] = R[k] + (point.t1[k] * P1 + point.t2[k] * P2);
+    R[k] = point.t1[k] * P1 + point.t2[k] * P2;
   });
+}
+
+/// Adds them to R.
+template <int M, class T, int K>
+CROSSBEAM_INLINE void add_point_forces(const PointKinematics<T, M, K>& kinematics,
+                                       const FibreStress<T>& m, const PointLanes<T, M>& point,
+                                       Vec3<T> (&R)[K]) {
+  Vec3<T> force[K];
+  point_forces(kinematics, m, point, force);
+  unrolled<M>([&](auto k) CROSSBEAM_INLINE_LAMBDA { R[k] = R[k] + force[k]; });
 }
 
 }  // namespace crossbeam

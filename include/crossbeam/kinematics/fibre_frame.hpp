@@ -44,33 +44,46 @@ CROSSBEAM_INLINE T pack_asin(const T& x) {
   for (int k = 1; k < 13; ++k) p = p * z + T(R(coefficients[k]));
   const T small_angle = s + s * z * p;
   const T angle = select(large, T(half_pi<R>()) - T(2) * small_angle, small_angle);
-  return select(x < T(0), -angle, angle);
+  return times_sign(angle, x);
 }
 
-/// arcsin x with root = sqrt(1 - x^2) given, tag [K-5]: turned by 0, 45 or 90 deg into the octant
+/// P(z), z = s^2, of [K-5], as two chains that run side by side.
+template <class T, std::size_t Terms>
+CROSSBEAM_INLINE T octant_polynomial(const T& z, const double (&coefficients)[Terms]) {
+  static_assert(Terms % 2 == 0);
+  using R = real_t<T>;
+  const T y = z * z;
+  T odd = T(R(coefficients[0])), even = T(R(coefficients[1]));
+  for (std::size_t k = 2; k < Terms; k += 2) {
+    odd = odd * y + T(R(coefficients[k]));
+    even = even * y + T(R(coefficients[k + 1]));
+  }
+  return even + z * odd;
+}
+
+/// arcsin x with root = sqrt(1 - x^2) > 0 given, tag [K-5]: turned by 0, 45 or 90 deg into the octant
 /// about zero.
 template <class T>
 CROSSBEAM_INLINE T pack_asin(const T& x, const T& root) {
   using R = real_t<T>;
-  constexpr double coefficients[] = {
-      0.016704469823119172097, 0.0067766208113588982398, 0.012108832256164656683,
-      0.013903570830247274449, 0.017356883357138812016,  0.022371991792930005289,
-      0.030381948327824196116, 0.044642857097249666853,  0.075000000000207138572,
-      0.16666666666666651186};
   constexpr double sine_of_octant = 0.38268343236508977173;  // sin(pi/8)
-  const T a = minimum(magnitude(x), T(1));
+  const T a = magnitude(x);
   const auto middle = a > T(R(sine_of_octant)), large = root < T(R(sine_of_octant));
   const T s = select(large, -root,
                      select(middle, (a - root) * T(R(1 / std::numbers::sqrt2)), a));
   const T turned = select(large, T(half_pi<R>()), select(middle, T(half_pi<R>() / R(2)), T(0)));
-  const T z = s * s, y = z * z;
-  T odd = T(R(coefficients[0])), even = T(R(coefficients[1]));  // two chains run side by side
-  for (int k = 2; k < 10; k += 2) {
-    odd = odd * y + T(R(coefficients[k]));
-    even = even * y + T(R(coefficients[k + 1]));
+  const T z = s * s;
+  T p;
+  if constexpr (std::is_same_v<R, float>) {
+    p = octant_polynomial(z, {0.04014926694, 0.04335775787, 0.0750646503, 0.1666656663});
+  } else {
+    p = octant_polynomial(
+        z, {0.016704469823119172097, 0.0067766208113588982398, 0.012108832256164656683,
+            0.013903570830247274449, 0.017356883357138812016, 0.022371991792930005289,
+            0.030381948327824196116, 0.044642857097249666853, 0.075000000000207138572,
+            0.16666666666666651186});
   }
-  const T angle = turned + (s + s * z * (even + z * odd));
-  return select(x < T(0), -angle, angle);
+  return times_sign(turned + (s + s * z * p), x);
 }
 
 }  // namespace detail

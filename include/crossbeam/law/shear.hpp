@@ -127,8 +127,7 @@ class AngleShear {
                                               const T& inv2) const {
     const Slope<T> d(beta, inv1, inv2, reference_.cosine);
     const T gamma = d.angle(reference_);
-    const T t = curve_.traction(magnitude(gamma));
-    const T tau = select(gamma < T(0), -t, t);
+    const T tau = times_sign(curve_.traction(magnitude(gamma)), gamma);
     return {tau * d.g1, tau * d.g2, tau * d.g3};
   }
   template <class T>
@@ -204,8 +203,7 @@ class PolynomialCurve {
     if (coefficients.empty() || coefficients.size() > max_terms)
       throw InputError("shear.coefficients", std::to_string(coefficients.size()) + " numbers", "",
                        "1 to 8 numbers");
-    terms_ = static_cast<int>(coefficients.size());
-    for (int k = 0; k < terms_; ++k) {
+    for (int k = 0; k < static_cast<int>(coefficients.size()); ++k) {
       modulus_[k] = require_finite("shear.coefficients[" + std::to_string(k) + "]",
                                    coefficients[k], "kN/mm");
       traction_[k] = modulus_[k] / R(k + 1);
@@ -236,15 +234,20 @@ class PolynomialCurve {
  private:
   using Coefficients = R[max_terms];
 
+  /// Of all terms, used or not: no loop count keeps a compiler from the vector unit. Even and odd powers
+  /// are two chains that run side by side.
   template <class T>
   CROSSBEAM_INLINE T sum(const Coefficients& a, const T& g) const {
-    T total(a[terms_ - 1]);
-    for (int k = terms_ - 2; k >= 0; --k) total = total * g + T(a[k]);
-    return total;
+    const T y = g * g;
+    T odd(a[max_terms - 1]), even(a[max_terms - 2]);
+    unrolled<max_terms / 2 - 1>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
+      odd = odd * y + T(a[max_terms - 3 - 2 * k]);
+      even = even * y + T(a[max_terms - 4 - 2 * k]);
+    });
+    return even + g * odd;
   }
 
-  Coefficients modulus_{}, traction_{}, energy_{};
-  int terms_ = 0;
+  Coefficients modulus_{}, traction_{}, energy_{};  // 0 beyond those given
 };
 
 /// Traction as a measured curve: straight lines between the given points, the last one continued.

@@ -90,12 +90,14 @@ class WovenMembrane {
   template <class T>
   CROSSBEAM_INLINE void elongate(const T& b11, const T& b22, T& u1, T& u2, T& inv1, T& inv2) const {
     const T lambda1 = stretch(b11), lambda2 = stretch(b22);
-    const InverseStretches<T> inv(lambda1, lambda2);
-    const T d1 = T(1) + lambda1, d2 = T(1) + lambda2, both = T(2) / (d1 * d2);
-    u1 = T(L1_) * b11 * (both * d2);
-    u2 = T(L2_) * b22 * (both * d1);
-    inv1 = inv.first;
-    inv2 = inv.second;
+    const T d1 = T(1) + lambda1, d2 = T(1) + lambda2;
+    const T lambda12 = lambda1 * lambda2, d12 = d1 * d2;
+    const T both = T(1) / (lambda12 * d12);  // one division for 1/lambda12 and 1/d12
+    const T inv_lambda12 = both * d12, inv_d12 = both * lambda12;
+    inv1 = inv_lambda12 * lambda2;
+    inv2 = inv_lambda12 * lambda1;
+    u1 = T(R(2) * L1_) * b11 * (inv_d12 * d2);
+    u2 = T(R(2) * L2_) * b22 * (inv_d12 * d1);
   }
   /// The yarns' share of the stress, from the cell's two yarns at the heights of the last call.
   /// @param heights moved on to the equilibrium

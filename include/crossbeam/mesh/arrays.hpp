@@ -53,6 +53,25 @@ struct NodeVectors {
   }
 };
 
+/// Where the components begin: in a loop that stores packs, a compiler would read them again and again
+/// from the arrays themselves.
+template <class R>
+struct NodePointers {
+  R *x, *y, *z;
+
+  explicit NodePointers(NodeVectors<R>& a) : x(a.x.data()), y(a.y.data()), z(a.z.data()) {}
+  template <class T>
+  [[nodiscard]] CROSSBEAM_INLINE Vec3<T> load(std::ptrdiff_t first) const {
+    return {T::load(x + first), T::load(y + first), T::load(z + first)};
+  }
+  template <class T>
+  CROSSBEAM_INLINE void store(std::ptrdiff_t first, const Vec3<T>& v) const {
+    v.x.store(x + first);
+    v.y.store(y + first);
+    v.z.store(z + first);
+  }
+};
+
 /// Loads one lane per consecutive node.
 template <class T, class R>
 CROSSBEAM_INLINE Vec3<T> load(const NodeVectors<R>& a, int first) {

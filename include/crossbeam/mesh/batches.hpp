@@ -148,8 +148,7 @@ class IndexBatches {
     return T::load(number) < T(R(batch.active));
   }
 
-  [[nodiscard]] CROSSBEAM_INLINE Vec3<T> gather(const NodeVectors<R>& a, const Batch& batch,
-                                                int column) const {
+  [[nodiscard]] Vec3<T> gather(const NodeVectors<R>& a, const Batch& batch, int column) const {
     if (batch.gather_row < 0) return load<T>(a, batch.first[column]);
     const int* n = row(batch, column);
     R x[lanes], y[lanes], z[lanes];
@@ -161,25 +160,64 @@ class IndexBatches {
     return {T::load(x), T::load(y), T::load(z)};
   }
 
-  /// All columns at once.
-  CROSSBEAM_INLINE void gather_all(const NodeVectors<R>& a, const Batch& batch,
-                                   Vec3<T> (&out)[Columns]) const {
-    if (batch.gather_row < 0)
-      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        out[c] = crossbeam::load<T>(a, batch.first[c]);
-      });
-    else
-      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA { out[c] = gather(a, batch, c); });
+  /// Nodal vectors as the tuples of one run see them: in the nodes themselves, or gathered.
+  struct View {
+    const R* component[3];
+    std::array<std::ptrdiff_t, Columns> column;
+
+    /// @param tuple place of lane 0 in the run
+    CROSSBEAM_INLINE Vec3<T> load(int k, std::ptrdiff_t tuple) const {
+      const std::ptrdiff_t at = column[k] + tuple;
+      return {T::load(component[0] + at), T::load(component[1] + at), T::load(component[2] + at)};
+    }
+    CROSSBEAM_INLINE void load_all(std::ptrdiff_t tuple, Vec3<T> (&out)[Columns]) const {
+      unrolled<Columns>([&](auto k) CROSSBEAM_INLINE_LAMBDA { out[k] = load(k, tuple); });
+    }
+  };
+  struct Gathered {
+    alignas(64) R number[3][Columns][run_capacity];
+  };
+
+  /// @param gathered holds the vectors where the run's nodes do not follow each other
+  [[nodiscard]] View view(const NodeVectors<R>& a, const Run& run, Gathered& gathered) const {
+    View out{{a.x.data(), a.y.data(), a.z.data()}, {}};
+    if (run.contiguous) {
+      for (int k = 0; k < Columns; ++k) out.column[k] = batches_[run.first_batch].first[k];
+      return out;
+    }
+    for (int c = 0; c < 3; ++c) {
+      const R* from = out.component[c];
+      out.component[c] = gathered.number[c][0];
+      for (int i = 0; i < run.batches; ++i)
+        for (int k = 0; k < Columns; ++k) {
+          const int* n = row(batches_[run.first_batch + i], k);
+          for (int l = 0; l < lanes; ++l) gathered.number[c][k][i * lanes + l] = from[n[l]];
+        }
+    }
+    for (int k = 0; k < Columns; ++k) out.column[k] = k * run_capacity;
+    return out;
   }
 
-  /// a[node] -= f of a gathered batch, lane after lane in the order of the tuples.
-  CROSSBEAM_INLINE void subtract(NodeVectors<R>& a, const Batch& batch, int column,
-                                 const Vec3<T>& f) const {
-    const int* n = row(batch, column);
-    for (int l = 0; l < batch.active; ++l) {
-      a.x[n[l]] -= f.x[l];
-      a.y[n[l]] -= f.y[l];
-      a.z[n[l]] -= f.z[l];
+  /// First node of every column of a contiguous run.
+  [[nodiscard]] const std::array<int, Columns>& first(const Run& run) const {
+    return batches_[run.first_batch].first;
+  }
+
+  /// a[node] -= the vector of each tuple and column of a gathered run, one after the other in the order
+  /// of the tuples.
+  /// @param from(column, component) numbers of all tuples
+  template <class From>
+  void subtract_gathered(NodeVectors<R>& a, const Run& run, const From& from) const {
+    R* const out[3] = {a.x.data(), a.y.data(), a.z.data()};
+    for (int i = 0; i < run.batches; ++i) {
+      const Batch& batch = batches_[run.first_batch + i];
+      for (int k = 0; k < Columns; ++k) {
+        const int* n = row(batch, k);
+        for (int c = 0; c < 3; ++c) {
+          const R* f = from(k, c) + i * lanes;
+          for (int l = 0; l < batch.active; ++l) out[c][n[l]] -= f[l];
+        }
+      }
     }
   }
 
@@ -233,157 +271,121 @@ class IndexBatches {
   std::vector<int> stage_runs_;  // first run of every stage, and their count
 };
 
-namespace detail {
-
-/// to[lane] -= value for the first `count` lanes. The nodes behind may be another thread's: they are
-/// not even written with what they had.
-template <class T>
-CROSSBEAM_INLINE void subtract_lanes(real_t<T>* to, const T& value, int count) {
-  if (count >= lanes_v<T>) {
-    (T::load(to) - value).store(to);
-    return;
-  }
-  for (int lane = 0; lane < count; ++lane) to[lane] -= value[lane];
-}
-
-/// Calls body(columns, where a's components begin, run, first column, nodes, columns) for every line of
-/// a run, with the number of columns as an integral constant: up to three, or 0 for more.
-template <class R, class Run, std::size_t Columns, class Body>
-CROSSBEAM_INLINE void for_each_line(NodeVectors<R>& a, const Run& run,
-                                    const std::array<int, Columns>& first, const Body& body) {
-  int k = 0;
-  for (int line = 0; line < run.lines; ++line) {
-    const int begin = k;
-    k = run.line_end[line];
-    const int base = first[run.column[begin]], count = run.tuples + run.shift[k - 1];
-    R* const out[3] = {a.x.data() + base, a.y.data() + base, a.z.data() + base};
-    switch (k - begin) {
-      case 1: body(std::integral_constant<int, 1>{}, out, run, begin, count, 1); break;
-      case 2: body(std::integral_constant<int, 2>{}, out, run, begin, count, 2); break;
-      case 3: body(std::integral_constant<int, 3>{}, out, run, begin, count, 3); break;
-      default: body(std::integral_constant<int, 0>{}, out, run, begin, count, k - begin);
-    }
-  }
-}
-
-}  // namespace detail
-
-/// Forces of one contiguous run, column by column, until the nodes get them: a node that is a corner
-/// of several tuples is then read and written once, and no load overtakes a store that it overlaps.
-template <int Columns, class T>
-class RunForces {
- public:
-  using R = real_t<T>;
-  using Run = typename IndexBatches<Columns, T>::Run;
-  static constexpr int lanes = lanes_v<T>;
-
-  RunForces() {
-    const T zero(R(0));
-    for (auto& column : force_)
-      for (auto& component : column)
-        for (int i = 0; i < front; i += lanes) zero.store(component + i);
-  }
-
-  /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
-  CROSSBEAM_INLINE void put(int column, int tuple, const Vec3<T>& f) {
-    f.x.store(force_[column][0] + front + tuple);
-    f.y.store(force_[column][1] + front + tuple);
-    f.z.store(force_[column][2] + front + tuple);
-  }
-
-  /// a[node] -= the forces put since the last time.
-  void subtract_from(NodeVectors<R>& a, const Run& run, const std::array<int, Columns>& first) {
-    const int end = (run.tuples + lanes - 1) / lanes * lanes;
-    const T zero(R(0));
-    for (auto& column : force_)
-      for (auto& component : column)
-        for (int i = 0; i < back; i += lanes) zero.store(component + front + end + i);
-    detail::for_each_line(a, run, first, [&](auto columns, auto&&... line) CROSSBEAM_INLINE_LAMBDA {
-      line_of<columns>(line...);
-    });
-  }
-
- private:
-  static constexpr int reach = IndexBatches<Columns, T>::reach;
-  // Loads reach up to `reach` numbers before the first and a pack beyond the last.
-  static constexpr int front = std::max(reach, lanes), back = std::max(reach, lanes) + lanes;
-  static constexpr int size = front + IndexBatches<Columns, T>::run_capacity + back;
-
-  /// @tparam Count columns of the line, or 0: `columns` of them
-  template <int Count>
-  CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
-                                int columns) const {
-    const int many = Count > 0 ? Count : columns;
-    const R* from[Columns] = {};
-    for (int k = 0; k < many; ++k)
-      from[k] = force_[run.column[begin + k]][0] + front - run.shift[begin + k];
-    for (int i = 0; i < count; i += lanes)
-      unrolled<3>([&](auto component) CROSSBEAM_INLINE_LAMBDA {
-        T sum = T::load(from[0] + component * size + i);
-        for (int k = 1; k < many; ++k) sum = sum + T::load(from[k] + component * size + i);
-        detail::subtract_lanes(out[component] + i, sum, count - i);
-      });
-  }
-
-  alignas(64) R force_[Columns][3][size];
-};
-
-/// The same where every tuple has one vector, and column k of a tuple gets it times a constant of its
-/// own: weight[k], with the sign of each component.
-template <int Columns, class T>
+/// Vectors of the tuples of one run until its nodes get them, line by line: a node that several tuples
+/// touch is then read and written once, and no load overtakes a store that it overlaps.
+/// @tparam Vectors one for each column, or 1
+template <int Vectors, int Columns, class T>
 class RunVectors {
  public:
   using R = real_t<T>;
-  using Run = typename IndexBatches<Columns, T>::Run;
+  using Batches = IndexBatches<Columns, T>;
+  using Run = typename Batches::Run;
   static constexpr int lanes = lanes_v<T>;
+  static_assert(Vectors == Columns || Vectors == 1);
 
   RunVectors() {
-    const T zero(R(0));
-    for (auto& component : vector_)
-      for (int i = 0; i < front; i += lanes) zero.store(component + i);
+    for (auto& vector : number_)
+      for (auto& component : vector) clear<front>(component);
   }
 
   /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
-  CROSSBEAM_INLINE void put(int tuple, const Vec3<T>& v) {
-    v.x.store(vector_[0] + front + tuple);
-    v.y.store(vector_[1] + front + tuple);
-    v.z.store(vector_[2] + front + tuple);
+  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t tuple, const Vec3<T>& v) {
+    v.x.store(number_[vector][0] + front + tuple);
+    v.y.store(number_[vector][1] + front + tuple);
+    v.z.store(number_[vector][2] + front + tuple);
   }
 
-  /// a[node of column k] -= weight[component][k] times the vector.
-  void subtract_from(NodeVectors<R>& a, const Run& run, const std::array<int, Columns>& first,
+  /// a[node of column k] -= vector k.
+  void subtract_from(NodeVectors<R>& a, const Batches& batches, const Run& run) {
+    if (!run.contiguous)
+      batches.subtract_gathered(a, run, [&](int k, int c) { return number_[k][c] + front; });
+    else
+      subtract_lines<false>(a, batches, run, {});
+  }
+  /// a[node of column k] -= weight[component][k] times the one vector.
+  void subtract_from(NodeVectors<R>& a, const Batches& batches, const Run& run,
                      const std::array<R, Columns> (&weight)[3]) {
-    const T zero(R(0));
-    const int end = (run.tuples + lanes - 1) / lanes * lanes;
-    for (auto& component : vector_)
-      for (int i = 0; i < back; i += lanes) zero.store(component + front + end + i);
-    detail::for_each_line(a, run, first, [&](auto columns, auto&&... line) CROSSBEAM_INLINE_LAMBDA {
-      line_of<columns>(line..., weight);
-    });
+    subtract_lines<true>(a, batches, run, weight);
   }
 
  private:
-  static constexpr int reach = IndexBatches<Columns, T>::reach;
+  static constexpr int reach = Batches::reach;
+  // Loads reach up to `reach` numbers before the first and a pack beyond the last.
   static constexpr int front = std::max(reach, lanes), back = std::max(reach, lanes) + lanes;
-  static constexpr int size = front + IndexBatches<Columns, T>::run_capacity + back;
+  static constexpr int size = front + Batches::run_capacity + back;
 
   template <int Count>
-  CROSSBEAM_INLINE void line_of(R* const (&out)[3], const Run& run, int begin, int count,
-                                int columns, const std::array<R, Columns> (&weight)[3]) const {
+  CROSSBEAM_INLINE static void clear(R* from) {
+    unrolled<Count / lanes>([&](auto i) CROSSBEAM_INLINE_LAMBDA { T(R(0)).store(from + i * lanes); });
+  }
+
+  template <bool Weighted>
+  void subtract_lines(NodeVectors<R>& a, const Batches& batches, const Run& run,
+                      const std::array<R, Columns> (&weight)[3]) {
+    const int end = front + run.batches * lanes;
+    for (auto& vector : number_)
+      for (auto& component : vector) clear<back>(component + end);
+    const auto& first = batches.first(run);
+    for (int line = 0, k = 0; line < run.lines; k = run.line_end[line++]) {
+      R* const out[3] = {a.x.data(), a.y.data(), a.z.data()};
+      const Line to{{out[0] + first[run.column[k]], out[1] + first[run.column[k]],
+                     out[2] + first[run.column[k]]},
+                    run.tuples + run.shift[run.line_end[line] - 1]};
+      switch (run.line_end[line] - k) {
+        case 1: line_of<Weighted, 1>(to, run, k, 1, weight); break;
+        case 2: line_of<Weighted, 2>(to, run, k, 2, weight); break;
+        case 3: line_of<Weighted, 3>(to, run, k, 3, weight); break;
+        default: line_of<Weighted, 0>(to, run, k, run.line_end[line] - k, weight);
+      }
+    }
+  }
+
+  struct Line {
+    R* component[3];
+    int nodes;
+  };
+
+  /// @tparam Count columns of the line, or 0: `columns` of them
+  template <bool Weighted, int Count>
+  CROSSBEAM_INLINE void line_of(const Line& to, const Run& run, int begin, int columns,
+                                const std::array<R, Columns> (&weight)[3]) const {
+    constexpr int most = Count > 0 ? Count : Columns;
     const int many = Count > 0 ? Count : columns;
-    const R* from[Columns] = {};
-    for (int k = 0; k < many; ++k) from[k] = vector_[0] + front - run.shift[begin + k];
-    for (int i = 0; i < count; i += lanes)
-      unrolled<3>([&](auto component) CROSSBEAM_INLINE_LAMBDA {
-        const auto& w = weight[component];
-        T sum = T(w[run.column[begin]]) * T::load(from[0] + component * size + i);
-        for (int k = 1; k < many; ++k)
-          sum = sum + T(w[run.column[begin + k]]) * T::load(from[k] + component * size + i);
-        detail::subtract_lanes(out[component] + i, sum, count - i);
+    const R* from[most] = {};
+    T w[3][most];
+    for (int k = 0; k < many; ++k) {
+      const int column = run.column[begin + k];
+      from[k] = number_[Vectors == 1 ? 0 : column][0] + front - run.shift[begin + k];
+      if constexpr (Weighted)
+        for (int c = 0; c < 3; ++c) w[c][k] = T(weight[c][column]);
+    }
+    R* const out[3] = {to.component[0], to.component[1], to.component[2]};
+    const auto sum = [&](auto c, int i) CROSSBEAM_INLINE_LAMBDA {
+      const auto term = [&](int k) CROSSBEAM_INLINE_LAMBDA {
+        const T f = T::load(from[k] + c * size + i);
+        if constexpr (Weighted)
+          return w[c][k] * f;
+        else
+          return f;
+      };
+      T total = term(0);
+      for (int k = 1; k < many; ++k) total = total + term(k);
+      return total;
+    };
+    int i = 0;
+    for (; i + lanes <= to.nodes; i += lanes)
+      unrolled<3>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
+        (T::load(out[c] + i) - sum(c, i)).store(out[c] + i);
+      });
+    // The nodes behind may be another thread's: they are not even written with what they had.
+    if (i < to.nodes)
+      unrolled<3>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
+        const T rest = sum(c, i);
+        for (int lane = 0; lane < to.nodes - i; ++lane) out[c][i + lane] -= rest[lane];
       });
   }
 
-  alignas(64) R vector_[3][size];
+  alignas(64) R number_[Vectors][3][size];
 };
 
 /// Constants of the tuples in the order of the lanes: component c of batch b is one pack.
@@ -424,6 +426,14 @@ class LaneArray {
   CROSSBEAM_INLINE void store(int batch, int component, const T& value) {
     value.store(data_.data() + offset(batch, component));
   }
+  /// Numbers of one batch; those of the next begin `stride` further on.
+  [[nodiscard]] CROSSBEAM_INLINE const R* data(int batch) const {
+    return data_.data() + static_cast<std::size_t>(batch) * stride_;
+  }
+  [[nodiscard]] CROSSBEAM_INLINE R* data(int batch) {
+    return data_.data() + static_cast<std::size_t>(batch) * stride_;
+  }
+  [[nodiscard]] CROSSBEAM_INLINE std::size_t stride() const { return stride_; }
   R& at(int batch, int component, int lane) { return data_[offset(batch, component) + lane]; }
 
  private:
