@@ -12,7 +12,6 @@
 #include <cmath>
 #include <compare>
 #include <map>
-#include <optional>
 #include <set>
 
 namespace crossbeam {
@@ -247,6 +246,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
             return largest;
           },
           [this](int b) { return batches_[b].active; });
+      for (int b = 0; b < batches_.size(); ++b)
+        has_gathered_ = has_gathered_ || batches_[b].gather_row >= 0;
       for (int k = 0; k < used_ && batches_.size() > 0; ++k) {
         const R w = constants_.at(0, k, 0);
         weights_[0][k] = sign_x_[k] * w;
@@ -323,21 +324,28 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
 
     template <bool Mirrored>
     void sweep(NodalState<R>& state, int first_run, int last_run) const {
+      if (constants_.is_uniform()) walk<Mirrored, 1>(state, first_run, last_run);
+      if (!constants_.is_uniform() || has_gathered_)
+        walk<Mirrored, Columns>(state, first_run, last_run);
+    }
+
+    /// @tparam Vectors 1: the contiguous runs of uniform stencils, whose columns get the moment times a
+    /// constant. Columns: the others, with weights of every stencil's own or nodes all over the place.
+    template <bool Mirrored, int Vectors>
+    void walk(NodalState<R>& state, int first_run, int last_run) const {
       typename IndexBatches<Columns, T>::Gathered gathered;
-      RunVectors<1, Columns, T> moments;
-      // With weights of every stencil's own, or nodes all over the place.
-      std::optional<RunVectors<Columns, Columns, T>> forces;
+      RunVectors<Vectors, Columns, T> forces;
+      if constexpr (Vectors > 1) clear_unused(forces);
+      const T zero(R(0));
       for (int r = first_run; r < last_run; ++r) {
         const auto& run = batches_.run(r);
+        if ((constants_.is_uniform() && run.contiguous) != (Vectors == 1)) continue;
         const auto x = batches_.view(state.x, run, gathered);
         const R *weight = constants_.data(run.first_batch),
                 *stiffness = stiffness_.data(run.first_batch);
         const std::size_t stride = constants_.stride();
         const int end = run.batches * lanes;
-        const bool alike = stride == 0 && run.contiguous;
-        if (!alike && !forces) clear_unused(forces.emplace());
         for (int i = 0; i < end; i += lanes, weight += stride, stiffness += lanes) {
-          const T zero(R(0));
           Vec3<T> m = T::load(stiffness) *
                       curvature<Mirrored>([&](int k) CROSSBEAM_INLINE_LAMBDA { return x.load(k, i); },
                                           weight);
@@ -345,16 +353,16 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
             const auto active = batches_.active(batches_[run.first_batch + i / lanes]);
             m = {select(active, m.x, zero), select(active, m.y, zero), select(active, m.z, zero)};
           }
-          if (alike)
-            moments.put(0, i, m);
+          if constexpr (Vectors == 1)
+            forces.put(0, i, m);
           else
             for (int k = 0; k < used_; ++k)
-              forces->put(k, i, T::load(weight + k * lanes) * signed_copy<Mirrored>(m, k));
+              forces.put(k, i, T::load(weight + k * lanes) * signed_copy<Mirrored>(m, k));
         }
-        if (alike)
-          moments.subtract_from(state.f, batches_, run, weights_);
+        if constexpr (Vectors == 1)
+          forces.subtract_from(state.f, batches_, run, weights_);
         else
-          forces->subtract_from(state.f, batches_, run);
+          forces.subtract_from(state.f, batches_, run);
       }
     }
 
@@ -367,7 +375,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
 
     int used_ = 0;
-    bool mirrored_ = false;
+    bool mirrored_ = false, has_gathered_ = false;
     std::array<R, Columns> sign_x_{}, sign_y_{};
     std::array<R, Columns> weights_[3]{};  // with their signs, of uniform stencils
     IndexBatches<Columns, T> batches_;

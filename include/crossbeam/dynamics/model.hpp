@@ -44,12 +44,9 @@ struct Model {
   [[nodiscard]] int padded_count() const { return static_cast<int>(state.f.x.size()); }
 
   void clear_forces() { clear_forces(0, padded_count()); }
-  /// @param first, last multiples of the array padding. (In pieces that a compiler writes out: the
-  /// library's function for long ones is slower at these lengths.)
   void clear_forces(int first, int last) {
     for (auto* component : {&state.f.x, &state.f.y, &state.f.z})
-      for (R* f = component->data() + first; f < component->data() + last; f += array_padding)
-        std::fill_n(f, array_padding, R(0));
+      std::fill(component->begin() + first, component->begin() + last, R(0));
   }
 
   /// Cuts the nodes into levels wide enough that no piece of work touches more than two, and sorts
