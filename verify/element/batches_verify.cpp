@@ -40,7 +40,7 @@ NodalState<real_t<T>> state_in(const Mesh<4>& m, const Points& x, const Points& 
   const auto real = [](const Eigen::Vector3d& p) { return Vec3<R>{R(p.x()), R(p.y()), R(p.z())}; };
   NodalState<R> state(m, areal_mass);
   for (int n = 0; n < m.node_count; ++n) {
-    state.x.set(n, real(x[n]));
+    state.x.set(n, vec3(x[n]));
     state.v.set(n, real(v[n]));
     state.v_predicted.set(n, real(v[n]));
   }

@@ -3,6 +3,7 @@
 /// Bending of the yarns along the fibre lines of a mesh, rotation-free; the yarns' natural state is
 /// straight. Theory: docs/theory/bending.md.
 
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/bending.hpp"
 #include "crossbeam/mesh/batches.hpp"
@@ -13,6 +14,7 @@
 #include <compare>
 #include <map>
 #include <set>
+#include <type_traits>
 
 namespace crossbeam {
 
@@ -298,10 +300,10 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
 
    private:
-    template <bool Mirrored>
-    CROSSBEAM_INLINE Vec3<T> signed_copy(const Vec3<T>& v, int k) const {
+    template <bool Mirrored, class U>
+    CROSSBEAM_INLINE Vec3<U> signed_copy(const Vec3<U>& v, int k) const {
       if constexpr (Mirrored)
-        return {T(sign_x_[k]) * v.x, T(sign_y_[k]) * v.y, v.z};
+        return {U(sign_x_[k]) * v.x, U(sign_y_[k]) * v.y, v.z};
       else
         return v;
     }
@@ -310,7 +312,22 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     CROSSBEAM_INLINE Vec3<T> curvature(const NodalState<R>& state, int b) const {
       const T zero(R(0));
       Vec3<T> kappa{zero, zero, zero};
-      if constexpr (Columns == 3) {  // unused columns have no weight
+      if constexpr (!std::is_same_v<R, double>) {  // the weights' sum is zero, tag [D-6]
+        using U = double_lanes_t<T>;
+        const auto x = [&](int k) CROSSBEAM_INLINE_LAMBDA {
+          return signed_copy<Mirrored>(batches_.template gather<U>(state.x, batches_[b], k), k);
+        };
+        const Vec3<U> x0 = x(0);
+        const auto add = [&](int k) CROSSBEAM_INLINE_LAMBDA {
+          kappa = kappa + constants_.load(b, k) * convert<T>(x(k) - x0);
+        };
+        if constexpr (Columns == 3) {
+          add(1);
+          add(2);
+        } else {
+          for (int k = 1; k < used_; ++k) add(k);
+        }
+      } else if constexpr (Columns == 3) {  // unused columns have no weight
         Vec3<T> x[Columns];
         batches_.gather_all(state.x, batches_[b], x);
         unrolled<Columns>([&](auto k) CROSSBEAM_INLINE_LAMBDA {

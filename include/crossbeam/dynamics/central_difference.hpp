@@ -3,6 +3,7 @@
 /// Explicit dynamics: the central-difference (leap-frog) scheme with centred damping, a constant
 /// proven bound of the critical step, and the energy ledger. Theory: docs/theory/dynamics.md.
 
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/ledger.hpp"
 #include "crossbeam/dynamics/model.hpp"
 #include "crossbeam/dynamics/thread_team.hpp"
@@ -20,6 +21,7 @@ template <class T>
 class CentralDifference {
  public:
   using R = real_t<T>;
+  using Wide = double_lanes_t<T>;
   static constexpr int lanes = lanes_v<T>;
 
   /// @param areal_mass   [kg/mm^2]
@@ -265,7 +267,8 @@ class CentralDifference {
   void move(int level) {
     const double a = model_.mass_damping * dt_ / 2;
     const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
-    const T dt(static_cast<R>(dt_)), half(R(0.5)), three_halves(R(1.5));
+    const T half(R(0.5)), three_halves(R(1.5));
+    const Wide dt(dt_);
     T fastest(R(0)), sum(R(0));
     for (int n = level_start_[level]; n < level_start_[level + 1]; n += lanes) {
       const Vec3<T> before = load<T>(model_.state.v, n);
@@ -273,7 +276,7 @@ class CentralDifference {
       if (is_constrained_[n / lanes]) v = constrained(n, v);
       store(model_.state.v, n, v);
       store(model_.state.v_predicted, n, three_halves * v - half * before);
-      store(model_.state.x, n, load<T>(model_.state.x, n) + dt * v);
+      store(model_.state.x, n, load<Wide>(model_.state.x, n) + dt * convert<Wide>(v));
       const T speed_squared = dot(v, v);
       fastest = maximum(fastest, speed_squared);
       sum = sum + speed_squared;  // a NaN or an overflow stays in the sum

@@ -3,6 +3,7 @@
 /// The membrane forces of a mesh, a batch of elements at a time: relative vectors -> fibre vectors
 /// -> law -> generalised forces -> corners. Theory: docs/theory/sweep.md.
 
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/dynamics/membrane_tangent.hpp"
@@ -538,11 +539,15 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     heights_known_ = true;
   }
 
-  CROSSBEAM_INLINE void relative_vectors(const NodeVectors<R>& x, const Batch& batch,
+  /// Differences in the precision of x, then rounded to that of the run, tag [D-6].
+  template <class X>
+  CROSSBEAM_INLINE void relative_vectors(const NodeVectors<X>& x, const Batch& batch,
                                          Vec3<T> (&D)[K]) const {
-    Vec3<T> corner[corners];
+    using U = std::conditional_t<std::is_same_v<X, R>, T, double_lanes_t<T>>;
+    Vec3<U> corner[corners], difference[K];
     batches_.gather_all(x, batch, corner);
-    Element::relative_vectors(corner, D);
+    Element::relative_vectors(corner, difference);
+    unrolled<K>([&](auto k) CROSSBEAM_INLINE_LAMBDA { D[k] = convert<T>(difference[k]); });
   }
 
   CROSSBEAM_INLINE PointLanes<T, M> load_point(int b, int p) const {

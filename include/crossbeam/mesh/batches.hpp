@@ -148,28 +148,33 @@ class IndexBatches {
     return T::load(number) < T(R(batch.active));
   }
 
-  [[nodiscard]] CROSSBEAM_INLINE Vec3<T> gather(const NodeVectors<R>& a, const Batch& batch,
+  /// @tparam U pack of the array's precision
+  template <class U = T>
+  [[nodiscard]] CROSSBEAM_INLINE Vec3<U> gather(const NodeVectors<real_t<U>>& a, const Batch& batch,
                                                 int column) const {
-    if (batch.gather_row < 0) return load<T>(a, batch.first[column]);
+    if (batch.gather_row < 0) return load<U>(a, batch.first[column]);
     const int* n = row(batch, column);
-    R x[lanes], y[lanes], z[lanes];
+    real_t<U> x[lanes], y[lanes], z[lanes];
     for (int l = 0; l < lanes; ++l) {
       x[l] = a.x[n[l]];
       y[l] = a.y[n[l]];
       z[l] = a.z[n[l]];
     }
-    return {T::load(x), T::load(y), T::load(z)};
+    return {U::load(x), U::load(y), U::load(z)};
   }
 
   /// All columns at once.
-  CROSSBEAM_INLINE void gather_all(const NodeVectors<R>& a, const Batch& batch,
-                                   Vec3<T> (&out)[Columns]) const {
+  template <class U>
+  CROSSBEAM_INLINE void gather_all(const NodeVectors<real_t<U>>& a, const Batch& batch,
+                                   Vec3<U> (&out)[Columns]) const {
     if (batch.gather_row < 0)
       unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        out[c] = crossbeam::load<T>(a, batch.first[c]);
+        out[c] = crossbeam::load<U>(a, batch.first[c]);
       });
     else
-      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA { out[c] = gather(a, batch, c); });
+      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
+        out[c] = gather<U>(a, batch, c);
+      });
   }
 
   /// a[node] -= f of a gathered batch, lane after lane in the order of the tuples.
