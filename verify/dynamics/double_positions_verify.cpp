@@ -99,14 +99,14 @@ CentralDifference<T> moving_sheet() {
   for (int k = 0; k < mesh.node_count; ++k) {
     const Vec3<double> X = mesh.nodes.get(k);
     s.x.set(k, {200 + 1.005 * X.x, 200 + 1.005 * X.y, 0});
-    s.v.set(k, {R(0), R(0), R(std::sin(pi * X.x / (n * h)) * std::sin(pi * X.y / (n * h)))});
+    s.v.set(k, {R(0), R(0), R(4 * std::sin(pi * X.x / (n * h)) * std::sin(pi * X.y / (n * h)))});
   }
   CentralDifference<T> out(std::move(s), areal_mass, 0.05);
   out.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law<R>())>>(
       mesh, law<R>(), areal_mass, MembraneOptions{1e-4, 0.06}));
   out.add(std::make_unique<BendingSweep<T>>(mesh, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
   out.add(tool<T>(Sphere<R>({R(230), R(230), R(20)}, R(20)),
-                  ToolMotion::prescribed([](double t) { return -0.5 * t; }), ContactParameters{},
+                  ToolMotion::prescribed([](double t) { return -2 * t; }), ContactParameters{},
                   mesh.node_count));
   return out;
 }

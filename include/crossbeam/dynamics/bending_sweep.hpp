@@ -314,18 +314,20 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       Vec3<T> kappa{zero, zero, zero};
       if constexpr (!std::is_same_v<R, double>) {  // the weights' sum is zero, tag [D-6]
         using U = double_lanes_t<T>;
-        const auto x = [&](int k) CROSSBEAM_INLINE_LAMBDA {
-          return signed_copy<Mirrored>(batches_.template gather<U>(state.x, batches_[b], k), k);
-        };
-        const Vec3<U> x0 = x(0);
-        const auto add = [&](int k) CROSSBEAM_INLINE_LAMBDA {
-          kappa = kappa + constants_.load(b, k) * convert<T>(x(k) - x0);
+        const auto add = [&](const Vec3<U>& x0, const Vec3<U>& x, int k) CROSSBEAM_INLINE_LAMBDA {
+          kappa = kappa + constants_.load(b, k) * convert<T>(signed_copy<Mirrored>(x, k) -
+                                                             signed_copy<Mirrored>(x0, 0));
         };
         if constexpr (Columns == 3) {
-          add(1);
-          add(2);
+          batches_.template with_all<U>(state.x, batches_[b],
+                                        [&](const auto& x) CROSSBEAM_INLINE_LAMBDA {
+                                          add(x[0], x[1], 1);
+                                          add(x[0], x[2], 2);
+                                        });
         } else {
-          for (int k = 1; k < used_; ++k) add(k);
+          const Vec3<U> x0 = batches_.template gather<U>(state.x, batches_[b], 0);
+          for (int k = 1; k < used_; ++k)
+            add(x0, batches_.template gather<U>(state.x, batches_[b], k), k);
         }
       } else if constexpr (Columns == 3) {  // unused columns have no weight
         Vec3<T> x[Columns];

@@ -539,15 +539,23 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     heights_known_ = true;
   }
 
-  /// Differences in the precision of x, then rounded to that of the run, tag [D-6].
+  CROSSBEAM_INLINE void relative_vectors(const NodeVectors<R>& x, const Batch& batch,
+                                         Vec3<T> (&D)[K]) const {
+    Vec3<T> corner[corners];
+    batches_.gather_all(x, batch, corner);
+    Element::relative_vectors(corner, D);
+  }
+  /// Of positions more precise than the run: differences first, then rounded, tag [D-6].
   template <class X>
+    requires(!std::is_same_v<X, R>)
   CROSSBEAM_INLINE void relative_vectors(const NodeVectors<X>& x, const Batch& batch,
                                          Vec3<T> (&D)[K]) const {
-    using U = std::conditional_t<std::is_same_v<X, R>, T, double_lanes_t<T>>;
-    Vec3<U> corner[corners], difference[K];
-    batches_.gather_all(x, batch, corner);
-    Element::relative_vectors(corner, difference);
-    unrolled<K>([&](auto k) CROSSBEAM_INLINE_LAMBDA { D[k] = convert<T>(difference[k]); });
+    using U = double_lanes_t<T>;
+    batches_.template with_all<U>(x, batch, [&](const auto& corner) CROSSBEAM_INLINE_LAMBDA {
+      Vec3<U> difference[K];
+      Element::relative_vectors(corner, difference);
+      unrolled<K>([&](auto k) CROSSBEAM_INLINE_LAMBDA { D[k] = convert<T>(difference[k]); });
+    });
   }
 
   CROSSBEAM_INLINE PointLanes<T, M> load_point(int b, int p) const {

@@ -164,17 +164,32 @@ class IndexBatches {
   }
 
   /// All columns at once.
-  template <class U>
-  CROSSBEAM_INLINE void gather_all(const NodeVectors<real_t<U>>& a, const Batch& batch,
-                                   Vec3<U> (&out)[Columns]) const {
+  CROSSBEAM_INLINE void gather_all(const NodeVectors<R>& a, const Batch& batch,
+                                   Vec3<T> (&out)[Columns]) const {
     if (batch.gather_row < 0)
       unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        out[c] = crossbeam::load<U>(a, batch.first[c]);
+        out[c] = crossbeam::load<T>(a, batch.first[c]);
       });
     else
+      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA { out[c] = gather(a, batch, c); });
+  }
+
+  /// body(all columns), written out for either way to read them: packs wider than a register stay in
+  /// registers only as long as no branch ends.
+  template <class U, class Body>
+  CROSSBEAM_INLINE void with_all(const NodeVectors<real_t<U>>& a, const Batch& batch,
+                                 const Body& body) const {
+    if (batch.gather_row < 0) {
+      Vec3<U> x[Columns];
       unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        out[c] = gather<U>(a, batch, c);
+        x[c] = crossbeam::load<U>(a, batch.first[c]);
       });
+      body(x);
+    } else {
+      Vec3<U> x[Columns];
+      unrolled<Columns>([&](auto c) CROSSBEAM_INLINE_LAMBDA { x[c] = gather<U>(a, batch, c); });
+      body(x);
+    }
   }
 
   /// a[node] -= f of a gathered batch, lane after lane in the order of the tuples.
