@@ -203,11 +203,11 @@ TEST_CASE("V-DYN-12 a moving sheet ends in float where it ends in double") {
   const Points exact = end_of_run<NativePack<double>>(step, steps, false);
   double way = 0;
   for (const auto& x : exact) way = std::max(way, std::abs(x.z()));
-  REQUIRE(way > 0.3);
+  REQUIRE(way > 0.5);
   const double gap = distance(end_of_run<NativePack<float>>(step, steps, false), exact);
   const double as_before = distance(end_of_run<NativePack<float>>(step, steps, true), exact);
-  claim("V-DYN-12", gap, 1e-5, "largest distance from double's nodes after 400 steps [mm]");
-  claim("V-DYN-12", as_before / gap, 20, "times as much with positions rounded after every step",
+  claim("V-DYN-12", gap, 2e-5, "largest distance from double's nodes after 400 steps [mm]");
+  claim("V-DYN-12", as_before / gap, 10, "times as much with positions rounded after every step",
         Bound::lower);
 }
 
