@@ -76,7 +76,7 @@ CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options)
   NodalState<R> state(mesh, areal_mass, held);
   for (int n = 0; n < mesh.node_count; ++n) {
     const auto X = mesh.nodes.get(n);
-    state.x.set(n, {R(prestretch * X.x), R(prestretch * X.y), R(0)});
+    state.x.set(n, {prestretch * X.x, prestretch * X.y, 0});
     const double wave =
         std::sin(std::numbers::pi * X.x / width) * std::sin(std::numbers::pi * X.y / length);
     state.v.set(n, {R(0), R(0), R(wave) * state.free.z[static_cast<std::size_t>(n)]});

@@ -20,10 +20,8 @@ template <class R>
 FormedState formed_state(const Model<R>& model, const Mesh<4>& mesh, int nx, int ny) {
   FormedState out{nx, ny, {}, {}, {}};
   for (int n = 0; n < mesh.node_count; ++n) {
-    const Vec3<R> x = model.state.x.get(n);
     out.flat.push_back(mesh.nodes.get(n));
-    out.points.push_back({static_cast<double>(x.x), static_cast<double>(x.y),
-                          static_cast<double>(x.z)});
+    out.points.push_back(model.state.x.get(n));
   }
   std::vector<ElementSample> samples;
   for (const auto& block : model.blocks) block->sample(model.state, samples);

@@ -69,7 +69,7 @@ struct SphereSheet {
       for (int k = 0; k < sheet.node_count; ++k) {
         random = random * 6364136223846793005u + 1442695040888963407u;
         const double uniform = static_cast<double>(random >> 11) * 0x1.0p-52 - 1;
-        state.x.z[k] = state.free.z[k] * static_cast<R>(perturbation * uniform);
+        state.x.z[k] = static_cast<double>(state.free.z[k]) * (perturbation * uniform);
       }
     Model<R> out(std::move(state), areal_mass, mass_damping);
     const MembraneOptions options{1e-4, 0.06};

@@ -51,7 +51,7 @@ td:first-child, th:first-child, td:nth-child(2), th:nth-child(2) { text-align: l
 </style></head><body>
 <h1>Run time against error</h1>
 <p>Every setting of the explicit drape, and three integrators of SUNDIALS, on two cases. Costs are
-seconds of one core of this machine{% if brief %}; <b>the short version: coarse meshes, few runs</b>{% endif %}.
+seconds of one core of this machine; float is float arithmetic with positions in double{% if brief %}; <b>the short version: coarse meshes, few runs</b>{% endif %}.
 How the reference is built, and what it proves: docs/theory/reference.md.</p>
 {% for c in cases %}
 <h2>{{ c.case }}</h2>

@@ -157,9 +157,8 @@ class QuarterDrape {
     out.stroke = stroke;
     const NodalState<R>& state = integrator_.state();
     for (int n = 0; n < state.node_count; ++n) {
-      const Vec3<R> x = state.x.get(n);
-      out.points.insert(out.points.end(), {static_cast<double>(x.x), static_cast<double>(x.y),
-                                           static_cast<double>(x.z)});
+      const Vec3<double> x = state.x.get(n);
+      out.points.insert(out.points.end(), {x.x, x.y, x.z});
     }
     const std::vector<ElementSample> samples = sample();
     const auto cell_field = [&](const char* name, auto value) {

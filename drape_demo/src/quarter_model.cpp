@@ -42,8 +42,8 @@ NodalState<R> QuarterModel<R>::initial_state() const {
     for (int n = 0; n < mesh_.node_count; ++n) {
       const Vec3<double> X = mesh_.nodes.get(n);
       const double dx = uniform(), dy = uniform(), dz = uniform();
-      state.x.set(n, {R(X.x + dx * static_cast<double>(state.free.x[n])),
-                      R(X.y + dy * static_cast<double>(state.free.y[n])), R(X.z + dz)});
+      state.x.set(n, {X.x + dx * static_cast<double>(state.free.x[n]),
+                      X.y + dy * static_cast<double>(state.free.y[n]), X.z + dz});
     }
   }
   return state;

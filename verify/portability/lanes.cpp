@@ -56,6 +56,25 @@ P random_pack(Random& random, double low, double high) {
   return pack;
 }
 
+/// Differences of double positions in the precision of the run, and velocities back to double.
+template <class P>
+void compare_differences(Random& random) {
+  using S = typename P::Value;
+  using Wide = double_lanes_t<P>;
+  const Vec3<Wide> a{random_pack<Wide>(random, 100, 200), random_pack<Wide>(random, 100, 200),
+                     random_pack<Wide>(random, 100, 200)};
+  const Wide x = random_pack<Wide>(random, 100, 200);
+  const P v = random_pack<P>(random, -1, 1);
+  const Vec3<P> d = convert<P>(Vec3<Wide>{a.x - x, a.y - x, a.z - x});
+  const Wide moved = x + Wide(1e-3) * convert<Wide>(v);
+  for (int i = 0; i < lanes_v<P>; ++i) {
+    expect_lane(d.x, i, S(a.x[i] - x[i]));
+    expect_lane(d.y, i, S(a.y[i] - x[i]));
+    expect_lane(d.z, i, S(a.z[i] - x[i]));
+    expect_lane(moved, i, x[i] + 1e-3 * double(v[i]));
+  }
+}
+
 /// Masks and sums against loops over the lanes.
 template <class P>
 void compare_reductions(Random& random) {
@@ -198,6 +217,7 @@ template <class P>
 void compare_all() {
   using S = typename P::Value;
   Random random;
+  compare_differences<P>(random);
   compare_reductions<P>(random);
   CellParameters<S> unbalanced;
   unbalanced.weft.youngs_modulus = S(20);

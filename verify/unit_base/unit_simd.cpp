@@ -137,4 +137,25 @@ TEST_CASE_TEMPLATE("load, store, broadcast, lane_sum and lane_maximum of packs k
   }
 }
 
+TEST_CASE_TEMPLATE("the lanes of a pack in the other precision are those of the scalar", P,
+                   Pack<float, 1>, Pack<float, 2>, Pack<float, 4>, Pack<float, 8>, Pack<float, 16>) {
+  using Wide = crossbeam::double_lanes_t<P>;
+  static_assert(crossbeam::lanes_v<Wide> == crossbeam::lanes_v<P>);
+  static_assert(std::is_same_v<typename Wide::Value, double>);
+  static_assert(std::is_same_v<crossbeam::double_lanes_t<Wide>, Wide>);
+  std::mt19937 random(20260108);
+  for (int sample = 0; sample < 50; ++sample) {
+    const auto doubles = random_lanes<Wide>(random, -10, 10);
+    const auto floats = random_lanes<P>(random, -10, 10);
+    const P narrow = crossbeam::convert<P>(Wide::load(doubles.data()));
+    const Wide wide = crossbeam::convert<Wide>(P::load(floats.data()));
+    const Wide same = crossbeam::convert<Wide>(Wide::load(doubles.data()));
+    for (int i = 0; i < crossbeam::lanes_v<P>; ++i) {
+      CHECK(narrow[i] == static_cast<float>(doubles[i]));
+      CHECK(wide[i] == static_cast<double>(floats[i]));
+      CHECK(same[i] == doubles[i]);
+    }
+  }
+}
+
 TEST_SUITE_END();

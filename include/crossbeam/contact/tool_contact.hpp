@@ -4,6 +4,7 @@
 /// culling of the nodes that provably cannot touch. Theory: docs/theory/contact.md.
 
 #include "crossbeam/base/dual.hpp"
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/contact/surface.hpp"
 #include "crossbeam/mesh/nodal_state.hpp"
 #include "crossbeam/mesh/tangent_entries.hpp"
@@ -245,6 +246,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
  public:
   using R = real_t<T>;
   using Base = ToolContact<R>;
+  using Wide = double_lanes_t<T>;
   static constexpr int lanes = lanes_v<T>;
 
   /// @param nodes number of nodes of the fabric
@@ -275,7 +277,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     Step step;
     step.slip_time = T(static_cast<R>(at_start_ ? 0.0 : dt));  // no slip has happened before t = 0
     step.half_over_dt = T(static_cast<R>(0.5 / dt));
-    step.z = T(static_cast<R>(this->z_));
+    step.z = Wide(this->z_);
     step.velocity = T(static_cast<R>(this->v_plus_));
     step.velocity_now = T(static_cast<R>(this->predicted_velocity()));
     Sums sums;
@@ -284,8 +286,9 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const int b = n / lanes;
       if (parameters_.culling && travel < safe_until_[b]) continue;
       const T area = T::load(state.area.data() + n);
-      Vec3<T> p = load<T>(state.x, n);
-      p.z = p.z - step.z;
+      Vec3<Wide> x = load<Wide>(state.x, n);
+      x.z = x.z - step.z;
+      const Vec3<T> p = convert<T>(x);
       const auto real = area > zero;
       if constexpr (HasFlatPart<Shape, T>)
         if (parameters_.region_classes && all(shape_.in_flat_part(p) || !real)) {
@@ -346,8 +349,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     using D = Dual<R, 6>;  // position and velocity of the node against the tool
     for (int n = 0; n < state.node_count; ++n) {
       Vec3<D> p, v;
-      const Vec3<R> x = state.x.get(n), rate = state.v.get(n);
-      p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z - R(this->z_), 2)};
+      const Vec3<R> x = seen(state.x.get(n), this->z_), rate = state.v.get(n);
+      p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
       v = {D::variable(rate.x, 3), D::variable(rate.y, 4),
            D::variable(rate.z - R(this->v_plus_), 5)};
       const SurfaceGap<D> at = shape_.gap(p);
@@ -380,9 +383,9 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     using D = Dual<R, 3>;
     double sum = 0;
     for (int n = 0; n < state.node_count; ++n) {
-      const Vec3<R> x = state.x.get(n), x0 = rest_.get(n), xi0 = stick_.get(n);
-      const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1),
-                      D::variable(x.z - R(this->z_), 2)};
+      const Vec3<R> x = seen(state.x.get(n), this->z_), x0 = seen(rest_.get(n), rest_z_);
+      const Vec3<R> xi0 = stick_.get(n);
+      const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
       const SurfaceGap<D> at = shape_.gap(p);
       if (!(at.gap < D(R(0)))) continue;
       const D k(R(parameters_.penalty) * state.area[n]), none(R(0));
@@ -390,7 +393,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       Vec3<D> force = normal.pressure * at.normal;
       if (parameters_.friction_model == Friction::elastic_stick) {
         const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
-                         D(xi0.z) + p.z - D(x0.z - R(rest_z_))};
+                         D(xi0.z) + p.z - D(x0.z)};
         force = force + stick_friction<false>(xi, at.normal, k, none, Vec3<D>{}, normal.pressure).force;
       }
       const Vec3<R> f{force.x.value, force.y.value, force.z.value};
@@ -412,12 +415,16 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   /// What all nodes of a step share, in every lane.
   struct Step {
     T slip_time, half_over_dt;
-    T z, velocity, velocity_now;  ///< of the tool
+    Wide z;                    ///< of the tool
+    T velocity, velocity_now;  ///< of the tool
   };
   struct Sums {
     Vec3<T> force{T(R(0)), T(R(0)), T(R(0))};
     T energy{R(0)};
   };
+
+  /// A node in the frame of a tool at z [mm], tag [D-6].
+  static Vec3<R> seen(const Vec3<double>& x, double z) { return {R(x.x), R(x.y), R(x.z - z)}; }
 
   /// One pack of nodes, against the flat part of the tool or against all of it.
   template <bool Flat>
@@ -614,7 +621,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   AlignedArray<R> normal_;   // normal force on the node, pressure positive [kN]
   std::vector<double> safe_until_;
   std::vector<char> active_;
-  NodeVectors<R> rest_;      // positions where statics began
+  NodeVectors<double> rest_; // positions where statics began
   double rest_z_ = 0;
   bool started_ = false, at_start_ = true;
 };

@@ -3,6 +3,7 @@
 /// Bending of the yarns along the fibre lines of a mesh, rotation-free; the yarns' natural state is
 /// straight. Theory: docs/theory/bending.md.
 
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/bending.hpp"
 #include "crossbeam/mesh/batches.hpp"
@@ -13,6 +14,7 @@
 #include <compare>
 #include <map>
 #include <set>
+#include <type_traits>
 
 namespace crossbeam {
 
@@ -273,8 +275,10 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       double sum = 0;
       const T zero(R(0));
       for (int b = 0; b < batches_.size(); ++b) {
-        const Vec3<T> kappa = curvature<true>(
-            [&](int k) { return batches_.gather(state.x, batches_[b], k); }, constants_.data(b));
+        using U = double_lanes_t<T>;
+        const Vec3<T> kappa = curvature<true, T>(
+            [&](int k) { return batches_.template gather<U>(state.x, batches_[b], k); },
+            constants_.data(b));
         const T energy = stiffness_.load(b, 0) * dot(kappa, kappa);
         sum += 0.5 * static_cast<double>(
                          lane_sum(select(batches_.active(batches_[b]), energy, zero)));
@@ -299,26 +303,40 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
 
    private:
-    template <bool Mirrored>
-    CROSSBEAM_INLINE Vec3<T> signed_copy(const Vec3<T>& v, int k) const {
+    template <bool Mirrored, class U>
+    CROSSBEAM_INLINE Vec3<U> signed_copy(const Vec3<U>& v, int k) const {
       if constexpr (Mirrored)
-        return {T(sign_x_[k]) * v.x, T(sign_y_[k]) * v.y, v.z};
+        return {U(sign_x_[k]) * v.x, U(sign_y_[k]) * v.y, v.z};
       else
         return v;
     }
 
+    using Narrow = difference_lanes_t<T>;
+    using Wide = double_lanes_t<Narrow>;  // of positions
+
     /// Second difference of the positions of a tuple along its yarn.
-    /// @param x(k) column k of the tuple; @param weight where the weights begin
-    template <bool Mirrored, class Position>
-    CROSSBEAM_INLINE Vec3<T> curvature(const Position& x, const R* weight) const {
+    /// @tparam U lanes of T, or half of them
+    /// @param x(k) column k of the tuple, in double; @param weight where the weights begin
+    template <bool Mirrored, class U, class Position>
+    CROSSBEAM_INLINE Vec3<U> curvature(const Position& x, const R* weight) const {
+      constexpr bool is_double = std::is_same_v<R, double>;
+      // Positions more precise than the run: differences first, for the weights' sum is zero [D-6].
+      const auto x0 = signed_copy<Mirrored>(x(0), 0);
       const auto term = [&](int k) CROSSBEAM_INLINE_LAMBDA {
-        return T::load(weight + k * lanes) * signed_copy<Mirrored>(x(k), k);
+        const auto xk = signed_copy<Mirrored>(x(k), k);
+        if constexpr (is_double)
+          return U::load(weight + k * lanes) * xk;
+        else
+          return U::load(weight + k * lanes) * convert<U>(xk - x0);
       };
-      Vec3<T> kappa = term(0);
+      constexpr int first = is_double ? 0 : 1;
+      Vec3<U> kappa = term(first);
       if constexpr (Columns == 3)  // unused columns have no weight
-        unrolled<Columns - 1>([&](auto k) CROSSBEAM_INLINE_LAMBDA { kappa = kappa + term(k + 1); });
+        unrolled<Columns - 1 - first>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
+          kappa = kappa + term(first + 1 + k);
+        });
       else
-        for (int k = 1; k < used_; ++k) kappa = kappa + term(k);
+        for (int k = first + 1; k < used_; ++k) kappa = kappa + term(k);
       return kappa;
     }
 
@@ -333,32 +351,32 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     /// constant. Columns: the others, with weights of every stencil's own or nodes all over the place.
     template <bool Mirrored, int Vectors>
     void walk(NodalState<R>& state, int first_run, int last_run) const {
-      typename IndexBatches<Columns, T>::Gathered gathered;
+      typename IndexBatches<Columns, T>::template Gathered<Wide> gathered;
       RunVectors<Vectors, Columns, T> forces;
       if constexpr (Vectors > 1) clear_unused(forces);
-      const T zero(R(0));
       for (int r = first_run; r < last_run; ++r) {
         const auto& run = batches_.run(r);
         if ((constants_.is_uniform() && run.contiguous) != (Vectors == 1)) continue;
-        const auto x = batches_.view(state.x, run, gathered);
+        const auto x = batches_.template view<Wide>(state.x, run, gathered);
         const R *weight = constants_.data(run.first_batch),
                 *stiffness = stiffness_.data(run.first_batch);
         const std::size_t stride = constants_.stride();
         const int end = run.batches * lanes;
-        for (int i = 0; i < end; i += lanes, weight += stride, stiffness += lanes) {
-          Vec3<T> m = T::load(stiffness) *
-                      curvature<Mirrored>([&](int k) CROSSBEAM_INLINE_LAMBDA { return x.load(k, i); },
-                                          weight);
-          if (i + lanes > run.tuples) {
-            const auto active = batches_.active(batches_[run.first_batch + i / lanes]);
-            m = {select(active, m.x, zero), select(active, m.y, zero), select(active, m.z, zero)};
+        for (int i = 0; i < end; i += lanes, weight += stride, stiffness += lanes)
+          for (int part = 0; part < lanes; part += lanes_v<Narrow>) {
+            const R* const w = weight + part;
+            const Vec3<Narrow> kappa = curvature<Mirrored, Narrow>(
+                [&](int k) CROSSBEAM_INLINE_LAMBDA { return x.load(k, i + part); }, w);
+            const Vec3<Narrow> m = Narrow::load(stiffness + part) * kappa;
+            if constexpr (Vectors == 1)
+              forces.put(0, i + part, m);
+            else
+              for (int k = 0; k < used_; ++k)
+                forces.put(k, i + part, Narrow::load(w + k * lanes) * signed_copy<Mirrored>(m, k));
           }
-          if constexpr (Vectors == 1)
-            forces.put(0, i, m);
-          else
-            for (int k = 0; k < used_; ++k)
-              forces.put(k, i, T::load(weight + k * lanes) * signed_copy<Mirrored>(m, k));
-        }
+        if (end > run.tuples)
+          forces.rest(Vectors == 1 ? 1 : used_, end - lanes,
+                      batches_.active(batches_[run.first_batch + run.batches - 1]));
         if constexpr (Vectors == 1)
           forces.subtract_from(state.f, batches_, run, weights_);
         else
@@ -371,7 +389,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       const T zero(R(0));
       for (int k = used_; k < Columns; ++k)
         for (int i = 0; i < IndexBatches<Columns, T>::run_capacity; i += lanes)
-          forces.put(k, i, {zero, zero, zero});
+          forces.put(k, i, Vec3<T>{zero, zero, zero});
     }
 
     int used_ = 0;

@@ -3,6 +3,7 @@
 /// Explicit dynamics: the central-difference (leap-frog) scheme with centred damping, a constant
 /// proven bound of the critical step, and the energy ledger. Theory: docs/theory/dynamics.md.
 
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/ledger.hpp"
 #include "crossbeam/dynamics/model.hpp"
 #include "crossbeam/dynamics/thread_team.hpp"
@@ -20,6 +21,7 @@ template <class T>
 class CentralDifference {
  public:
   using R = real_t<T>;
+  using Wide = double_lanes_t<T>;
   static constexpr int lanes = lanes_v<T>;
 
   /// @param areal_mass   [kg/mm^2]
@@ -265,10 +267,12 @@ class CentralDifference {
   void move(int level) {
     const double a = model_.mass_damping * dt_ / 2;
     const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
-    const T dt(static_cast<R>(dt_)), half(R(0.5)), three_halves(R(1.5));
+    const T half(R(0.5)), three_halves(R(1.5));
+    const Wide dt(dt_);
     T fastest(R(0)), sum(R(0));
     NodalState<R>& state = model_.state;
-    const NodePointers<R> x(state.x), v(state.v), predicted(state.v_predicted), f(state.f);
+    const NodePointers<double> x(state.x);
+    const NodePointers<R> v(state.v), predicted(state.v_predicted), f(state.f);
     const R* const inverse_mass = state.inverse_mass.data();
     const char* const is_constrained = is_constrained_.data();
     const std::ptrdiff_t first = level_start_[level], last = level_start_[level + 1];
@@ -279,7 +283,7 @@ class CentralDifference {
       if (is_constrained[pack]) after = constrained(static_cast<int>(n), after);
       v.store(n, after);
       predicted.store(n, three_halves * after - half * before);
-      x.store(n, x.template load<T>(n) + dt * after);
+      x.store(n, x.template load<Wide>(n) + dt * convert<Wide>(after));
       const T speed_squared = dot(after, after);
       fastest = maximum(fastest, speed_squared);
       sum = sum + speed_squared;  // a NaN or an overflow stays in the sum

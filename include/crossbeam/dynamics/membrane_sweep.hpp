@@ -3,6 +3,7 @@
 /// The membrane forces of a mesh, a batch of elements at a time: relative vectors -> fibre vectors
 /// -> law -> generalised forces -> corners. Theory: docs/theory/sweep.md.
 
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/dynamics/membrane_tangent.hpp"
@@ -301,7 +302,10 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
 
   using Batches = IndexBatches<corners, T>;
   using Run = typename Batches::Run;
-  using View = typename Batches::View;
+  using Narrow = difference_lanes_t<T>;
+  using Wide = double_lanes_t<Narrow>;  // of positions, tag [D-6]
+  template <class U>
+  using View = typename Batches::template View<U>;
 
   /// What the loops over one run hand on to each other: it stays in the first-level cache.
   struct Work {
@@ -332,7 +336,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       Buffer g, D, F, k_Lh;
     } yarn[2];
     RunVectors<corners, corners, T> corner;
-    typename Batches::Gathered gathered;
+    typename Batches::template Gathered<Wide> positions;
+    typename Batches::template Gathered<T> velocities;
 
     /// Lanes without a tuple are kept at rest, whatever nodes they read: without strain, and with fibre
     /// vectors of no length they exert no force and lose no power.
@@ -353,14 +358,15 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     const int end = run.batches * lanes;
     for (int p = 0; p < Element::points; ++p) {
       if (p == 0)
-        strains<true>(batches_.view(state.x, run, work.gathered), run, p, work);
+        strains<true>(batches_.template view<Wide>(state.x, run, work.positions), run, p, work);
       else
         strains<false>({}, run, p, work);
       if (run.tuples < end)
         work.rest(end - lanes, batches_.active(batches_[run.first_batch + run.batches - 1]));
       stresses(law, run, p, work, sums);
       if constexpr (Viscous)
-        viscous_stresses(batches_.view(state.v_predicted, run, work.gathered), run, p, work, power);
+        viscous_stresses(batches_.template view<T>(state.v_predicted, run, work.velocities), run, p, work,
+                         power);
       collect_forces(run, p, work);
     }
     work.corner.subtract_from(state.f, batches_, run);
@@ -387,20 +393,39 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     return {constants_.data(run.first_batch) + p * point_size * lanes, constants_.stride()};
   }
 
+  /// Relative vectors of positions more precise than the run: differences first, then rounded [D-6].
+  CROSSBEAM_INLINE void differences(const View<Wide>& x, int end, Work& work) const {
+    for (int i = 0; i < end; i += lanes_v<Wide>) {
+      Vec3<Wide> corner[corners], D[K];
+      x.load_all(i, corner);
+      Element::relative_vectors(corner, D);
+      unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
+        convert<Narrow>(D[v].x).store(work.D[v].x.number + i);
+        convert<Narrow>(D[v].y).store(work.D[v].y.number + i);
+        convert<Narrow>(D[v].z).store(work.D[v].z.number + i);
+      });
+    }
+  }
+
   /// Fibre vectors and strains; at the first point also what all points share.
   template <bool First>
-  CROSSBEAM_INLINE void strains(const View& x, const Run& run, int p, Work& work) const {
+  CROSSBEAM_INLINE void strains(const View<Wide>& x, const Run& run, int p, Work& work) const {
     const int end = run.batches * lanes;
     const R cosine = law_.reference().cosine;
     const T hourglass(hourglass_);
     const bool has_hourglass = hourglass_ > R(0);
+    if constexpr (First && !std::is_same_v<R, double>) differences(x, end, work);
     Constants c = constants(run, p);
     for (int i = 0; i < end; i += lanes, c.next()) {
       Vec3<T> D[K];
       if constexpr (First) {
-        Vec3<T> corner[corners];
-        x.load_all(i, corner);
-        Element::relative_vectors(corner, D);
+        if constexpr (std::is_same_v<R, double>) {
+          Vec3<T> corner[corners];
+          x.load_all(i, corner);
+          Element::relative_vectors(corner, D);
+        } else {
+          unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA { D[v] = work.D[v].load(i); });
+        }
         if constexpr (Element::has_hourglass) {
           if (has_hourglass) {
             Vec3<T> q = D[2];
@@ -408,7 +433,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
               q = q - (c.load(hourglass_at) * D[0] + c.load(hourglass_at + 1) * D[1]);
             work.hourglass.store(i, hourglass * c.load(hourglass_at + 2) * q);
           }
-        } else if constexpr (Element::points > 1) {
+        } else if constexpr (Element::points > 1 && std::is_same_v<R, double>) {
           unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA { work.D[v].store(i, D[v]); });
         }
       } else {
@@ -534,7 +559,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   }
 
   /// [D-5]; `power` collects what it takes.
-  CROSSBEAM_INLINE void viscous_stresses(const View& v, const Run& run, int p, Work& work,
+  CROSSBEAM_INLINE void viscous_stresses(const View<T>& v, const Run& run, int p, Work& work,
                                          T& power) const {
     const int end = run.batches * lanes;
     Constants c = constants(run, p);
@@ -585,11 +610,12 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     heights_known_ = true;
   }
 
-  void relative_vectors(const NodeVectors<R>& x, const Batch& batch,
-                                         Vec3<T> (&D)[K]) const {
-    Vec3<T> corner[corners];
-    for (int a = 0; a < corners; ++a) corner[a] = batches_.gather(x, batch, a);
-    Element::relative_vectors(corner, D);
+  void relative_vectors(const NodeVectors<double>& x, const Batch& batch, Vec3<T> (&D)[K]) const {
+    using U = double_lanes_t<T>;
+    Vec3<U> corner[corners], difference[K];
+    for (int a = 0; a < corners; ++a) corner[a] = batches_.template gather<U>(x, batch, a);
+    Element::relative_vectors(corner, difference);
+    for (int k = 0; k < K; ++k) D[k] = convert<T>(difference[k]);
   }
 
   CROSSBEAM_INLINE PointLanes<T, M> load_point(int b, int p) const {

@@ -148,45 +148,53 @@ class IndexBatches {
     return T::load(number) < T(R(batch.active));
   }
 
-  [[nodiscard]] Vec3<T> gather(const NodeVectors<R>& a, const Batch& batch, int column) const {
-    if (batch.gather_row < 0) return load<T>(a, batch.first[column]);
+  /// @tparam U pack of the array's precision
+  template <class U = T>
+  [[nodiscard]] Vec3<U> gather(const NodeVectors<real_t<U>>& a, const Batch& batch,
+                               int column) const {
+    if (batch.gather_row < 0) return load<U>(a, batch.first[column]);
     const int* n = row(batch, column);
-    R x[lanes], y[lanes], z[lanes];
+    real_t<U> x[lanes], y[lanes], z[lanes];
     for (int l = 0; l < lanes; ++l) {
       x[l] = a.x[n[l]];
       y[l] = a.y[n[l]];
       z[l] = a.z[n[l]];
     }
-    return {T::load(x), T::load(y), T::load(z)};
+    return {U::load(x), U::load(y), U::load(z)};
   }
 
   /// Nodal vectors as the tuples of one run see them: in the nodes themselves, or gathered.
+  /// @tparam U pack of their precision
+  template <class U>
   struct View {
-    const R* component[3];
+    const real_t<U>* component[3];
     std::array<std::ptrdiff_t, Columns> column;
 
     /// @param tuple place of lane 0 in the run
-    CROSSBEAM_INLINE Vec3<T> load(int k, std::ptrdiff_t tuple) const {
+    CROSSBEAM_INLINE Vec3<U> load(int k, std::ptrdiff_t tuple) const {
       const std::ptrdiff_t at = column[k] + tuple;
-      return {T::load(component[0] + at), T::load(component[1] + at), T::load(component[2] + at)};
+      return {U::load(component[0] + at), U::load(component[1] + at), U::load(component[2] + at)};
     }
-    CROSSBEAM_INLINE void load_all(std::ptrdiff_t tuple, Vec3<T> (&out)[Columns]) const {
+    CROSSBEAM_INLINE void load_all(std::ptrdiff_t tuple, Vec3<U> (&out)[Columns]) const {
       unrolled<Columns>([&](auto k) CROSSBEAM_INLINE_LAMBDA { out[k] = load(k, tuple); });
     }
   };
+  template <class U>
   struct Gathered {
-    alignas(64) R number[3][Columns][run_capacity];
+    alignas(64) real_t<U> number[3][Columns][run_capacity];
   };
 
   /// @param gathered holds the vectors where the run's nodes do not follow each other
-  [[nodiscard]] View view(const NodeVectors<R>& a, const Run& run, Gathered& gathered) const {
-    View out{{a.x.data(), a.y.data(), a.z.data()}, {}};
+  template <class U>
+  [[nodiscard]] View<U> view(const NodeVectors<real_t<U>>& a, const Run& run,
+                             Gathered<U>& gathered) const {
+    View<U> out{{a.x.data(), a.y.data(), a.z.data()}, {}};
     if (run.contiguous) {
       for (int k = 0; k < Columns; ++k) out.column[k] = batches_[run.first_batch].first[k];
       return out;
     }
     for (int c = 0; c < 3; ++c) {
-      const R* from = out.component[c];
+      const real_t<U>* from = out.component[c];
       out.component[c] = gathered.number[c][0];
       for (int i = 0; i < run.batches; ++i)
         for (int k = 0; k < Columns; ++k) {
@@ -289,10 +297,21 @@ class RunVectors {
   }
 
   /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
-  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t tuple, const Vec3<T>& v) {
+  template <class U>
+  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t tuple, const Vec3<U>& v) {
     v.x.store(number_[vector][0] + front + tuple);
     v.y.store(number_[vector][1] + front + tuple);
     v.z.store(number_[vector][2] + front + tuple);
+  }
+  /// Zeros in the lanes without a tuple.
+  /// @param vectors the first ones; @param tuple place of lane 0 in the run
+  template <class Mask>
+  void rest(int vectors, std::ptrdiff_t tuple, const Mask& active) {
+    for (int k = 0; k < vectors; ++k)
+      for (auto& component : number_[k]) {
+        R* const at = component + front + tuple;
+        select(active, T::load(at), T(R(0))).store(at);
+      }
   }
 
   /// a[node of column k] -= vector k.

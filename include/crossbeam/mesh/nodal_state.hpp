@@ -21,7 +21,7 @@ struct NodeConstraint {
 template <class R>
 struct NodalState {
   int node_count = 0;
-  NodeVectors<R> x;        ///< positions x_n [mm]
+  NodeVectors<double> x;   ///< positions x_n [mm]; kernels get their differences, tag [D-6]
   NodeVectors<R> v;        ///< velocities v_{n-1/2} [mm/ms]
   /// Velocities predicted for t_n from v_{n-1/2} and the last acceleration, of second order,
   /// 2 v_{n-1/2} - v_{n-1}, tag [D-2] [mm/ms]
@@ -53,8 +53,7 @@ struct NodalState {
       if (!(A[n] > 0))
         throw InputError("mesh.nodes[" + std::to_string(n) + "]", "no element", "",
                          "every node belongs to an element");
-      const Vec3<double> X = mesh.nodes.get(n);
-      x.set(n, {R(X.x), R(X.y), R(X.z)});
+      x.set(n, mesh.nodes.get(n));
       free.set(n, {R(1), R(1), R(1)});
       area[n] = R(A[n]);
       mass[n] = R(A[n] * areal_mass);
