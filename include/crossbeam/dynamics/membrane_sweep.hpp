@@ -332,25 +332,27 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   CROSSBEAM_INLINE void run_forces(const Law& law, NodalState<R>& state,
                                    const typename IndexBatches<corners, T>::Run& run, Work& work,
                                    T& power, StageSums& sums) {
+    const bool hourglass = hourglass_ > R(0);
     for (int p = 0; p < Element::points; ++p) {
       for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
-        strain_point(state, run.first_batch + k, p, i, work);
+        strain_point(state, run.first_batch + k, p, i, hourglass, work);
       stresses(law, run, p, work, sums);
       if constexpr (Viscous) viscous_stresses(state, run, p, work, power);
       for (int k = 0, i = 0; k < run.batches; ++k, i += lanes)
-        collect_point(state, run, k, p, i, work);
+        collect_point(state, run, k, p, i, hourglass, work);
     }
     if (run.contiguous)
       work.corner.subtract_from(state.f, run, batches_[run.first_batch].first);
   }
 
   /// Fibre vectors and strains; at the first point also what all points share.
-  CROSSBEAM_INLINE void strain_point(const NodalState<R>& state, int b, int p, int i, Work& work) {
+  CROSSBEAM_INLINE void strain_point(const NodalState<R>& state, int b, int p, int i,
+                                     [[maybe_unused]] bool hourglass, Work& work) {
     Vec3<T> D[K];
     if (p == 0) {
       relative_vectors(state.x, batches_[b], D);
       if constexpr (Element::has_hourglass) {
-        if (hourglass_ > R(0)) work.hourglass.store(i, hourglass_stiffness(b) * hourglass_vector(b, D));
+        if (hourglass) work.hourglass.store(i, hourglass_stiffness(b) * hourglass_vector(b, D));
       } else if constexpr (Element::points > 1) {
         unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
           work.D[v].store(i, D[v]);
@@ -373,7 +375,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   /// Adds the point's generalised forces, and after the last point gives them to the corners.
   CROSSBEAM_INLINE void collect_point(NodalState<R>& state,
                                       const typename IndexBatches<corners, T>::Run& run, int k,
-                                      int p, int i, Work& work) {
+                                      int p, int i, [[maybe_unused]] bool hourglass,
+                                      Work& work) {
     const int b = run.first_batch + k;
     const T zero(R(0));
     Vec3<T> force[K];
@@ -390,7 +393,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       return;
     }
     if constexpr (Element::has_hourglass)
-      if (hourglass_ > R(0)) {
+      if (hourglass) {
         const Vec3<T> q = work.hourglass.load(i);
         force[0] = force[0] - constants_.load(b, hourglass_at) * q;
         force[1] = force[1] - constants_.load(b, hourglass_at + 1) * q;
