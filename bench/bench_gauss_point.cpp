@@ -6,6 +6,7 @@
 ///
 /// Laws: `measured_shear`, the energy cell with the shear curve of the scene `realistic`;
 /// `constant_shear`, the energy cell with Eq. 26; `second_order`, the paper's cell with Eq. 26.
+/// Followed cells (`followed`) and the warm yardstick move by one time step between two visits.
 /// `paper_*` are the yardstick: Eq. 1-20 and 24-27 in plain Eigen (support/paper_element.hpp).
 ///
 /// With --scene=FILE instead the fabric and the strain history of that file, law `scene`
@@ -13,6 +14,7 @@
 
 #include "support/element_forces.hpp"
 #include "support/fabric.hpp"
+#include "support/followed.hpp"
 #include "support/lanes.hpp"
 #include "support/paper_element.hpp"
 #include "support/report.hpp"
@@ -25,6 +27,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace bench {
@@ -100,68 +103,20 @@ void register_forces(const std::string& law_name, const std::string& iterated, c
   });
 }
 
-/// The point whose cell is followed from step to step, in the short loops of the sweep.
-template <class T, class Shear>
-void register_followed(const std::string& law_name, const Shear& shear) {
-  using R = real_t<T>;
-  using Law = crossbeam::WovenMembrane<CrossedBeamCell<R>, Shear, crossbeam::CellPrice::followed>;
-  const auto run = [shear](benchmark::State& state) {
-    const Law law(CrossedBeamCell<R>(cell_parameters<R>()), shear);
-    const Ring<R> ring;
-    crossbeam::AlignedArray<R> data[15];
-    for (auto& array : data) array.resize(ring_size);
-    auto& [u1, u2, inv1, inv2, w1, w2, m11, m22, m12, g1, D1, F1, g2, D2, F2] = data;
-    crossbeam::AlignedArray<R> k1(ring_size), k2(ring_size);
-    for (std::size_t k = 0; k < ring_size; ++k) {
-      const auto at = law.cell().solve(ring.u1[k], ring.u2[k]);
-      w1[k] = at.forces.w1;
-      w2[k] = at.forces.w2;
-    }
-    constexpr int step = crossbeam::lanes_v<T>, block = 64;
-    const auto put = [](crossbeam::AlignedArray<R>& to, int k, const T& value) {
-      if constexpr (step == 1)
-        to[static_cast<std::size_t>(k)] = value;
-      else
-        value.store(to.data() + k);
-    };
-    for (auto _ : state) {
-      for (int first = 0; first < ring_size; first += block) {
-        for (int k = first; k < first + block; k += step) {
-          T a, b, c, d;
-          law.elongate(load<T>(ring.b11, k), load<T>(ring.b22, k), a, b, c, d);
-          put(u1, k, a), put(u2, k, b), put(inv1, k, c), put(inv2, k, d);
-        }
-        for (int k = first; k < first + block; k += step) {
-          const auto y = law.cell().evaluate_yarn(law.cell().warp(), load<T>(u1, k), load<T>(w1, k));
-          put(g1, k, y.g), put(D1, k, y.D), put(F1, k, y.F), put(k1, k, y.k_Lh);
-        }
-        for (int k = first; k < first + block; k += step) {
-          const auto y = law.cell().evaluate_yarn(law.cell().weft(), load<T>(u2, k), load<T>(w2, k));
-          put(g2, k, y.g), put(D2, k, y.D), put(F2, k, y.F), put(k2, k, y.k_Lh);
-        }
-        for (int k = first; k < first + block; k += step) {
-          crossbeam::CrimpHeights<T> heights{load<T>(w1, k), load<T>(w2, k)};
-          T a, b;
-          law.follow(load<T>(u1, k), load<T>(u2, k), load<T>(inv1, k), load<T>(inv2, k),
-                     crossbeam::FollowedYarn<T>{load<T>(g1, k), load<T>(D1, k), load<T>(F1, k),
-                                                load<T>(k1, k)},
-                     crossbeam::FollowedYarn<T>{load<T>(g2, k), load<T>(D2, k), load<T>(F2, k),
-                                                load<T>(k2, k)},
-                     heights, a, b);
-          put(w1, k, heights.w1), put(w2, k, heights.w2), put(m11, k, a), put(m22, k, b);
-        }
-        for (int k = first; k < first + block; k += step) {
-          const auto m = law.with_shear(
-              FibreStrain<T>{load<T>(ring.b11, k), load<T>(ring.b22, k), load<T>(ring.b12, k)},
-              load<T>(inv1, k), load<T>(inv2, k), load<T>(m11, k), load<T>(m22, k));
-          put(m11, k, m.m11), put(m22, k, m.m22), put(m12, k, m.m12);
-        }
-        benchmark::ClobberMemory();
-      }
-    }
-    report(state, ring_size, "time_per_point");
-  };
-  benchmark::RegisterBenchmark(namer<T>(law_name, "followed")("forces").c_str(), run);
+/// The point whose cell is followed from step to step.
+template <class T, class Law>
+void register_followed(const std::string& law_name, const Law& law) {
+  const auto name = namer<T>(law_name, "followed");
+  const crossbeam::WovenMembrane<std::decay_t<decltype(law.cell())>,
+                                 std::decay_t<decltype(law.shear())>,
+                                 crossbeam::CellPrice::followed>
+      followed(law.cell(), law.shear());
+  benchmark::RegisterBenchmark(name("forces").c_str(), [followed](benchmark::State& state) {
+    time_followed<T, Chain::strain_to_stress>(state, followed, ring_states());
+  });
+  benchmark::RegisterBenchmark(name("corner_forces").c_str(), [followed](benchmark::State& state) {
+    time_followed<T, Chain::corners_to_forces>(state, followed, ring_states());
+  });
 }
 
 /// What needs a potential; the derivatives once by hand and once by dual numbers.
@@ -222,10 +177,10 @@ void register_fabric() {
     register_forces<T>(
         "second_order", "converged",
         membrane(SecondOrderCell<R>(cell_parameters<R>()), constant_shear<R>(), converged));
-    register_forces<T>("constant_shear", "3_sweeps",
-                       membrane(cell, constant_shear<R>(), SolverControl::fixed(3)));
-    register_followed<T>("constant_shear", constant_shear<R>());
-    register_followed<T>("measured_shear", measured_shear<R>());
+    const auto constant = membrane(cell, constant_shear<R>(), SolverControl::fixed(3));
+    register_forces<T>("constant_shear", "3_sweeps", constant);
+    register_followed<T>("constant_shear", constant);
+    register_followed<T>("measured_shear", membrane(cell, measured_shear<R>(), converged));
     const auto add = [&](const char* iterated, SolverControl control) {
       const auto law = membrane(cell, measured_shear<R>(), control);
       register_forces<T>("measured_shear", iterated, law);
@@ -243,10 +198,12 @@ void register_scene(const SceneFile& scene) {
   for_each_number([&]<class T>() {
     using R = real_t<T>;
     register_nothing<T>();
-    scene.with_law<R>([](const auto& law, const std::string& iterated) {
+    scene.with_law<R>([&](const auto& law, const std::string& iterated) {
       register_forces<T>("scene", iterated, law);
-      if constexpr (requires(const FibreStrain<R>& beta) { law.hessian(law.evaluate(beta)); })
+      if constexpr (requires(const FibreStrain<R>& beta) { law.hessian(law.evaluate(beta)); }) {
         register_derivatives<T>("scene", iterated, law);
+        if (scene.follows()) register_followed<T>("scene", law);
+      }
     });
   });
 }

@@ -155,6 +155,9 @@ class SceneFile {
     with_law<double>([](const auto&, const std::string&) {});
   }
 
+  /// Whether the scene's cells are followed from step to step.
+  [[nodiscard]] bool follows() const { return fabric_.cell_sweeps == 0; }
+
   /// Calls `use(law, iterated)` with the scene's law in the numbers R.
   template <class R, class Use>
   void with_law(const Use& use) const {
@@ -163,8 +166,8 @@ class SceneFile {
     if (fabric_.formulation == drape::CellFormulation::second_order)
       with_shear<R>(SecondOrderCell<R>(parameters), SolverControl::converged(), "converged", use);
     else
-      with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl::fixed(fabric_.cell_sweeps),
-                    std::to_string(fabric_.cell_sweeps) + "_sweeps", use);
+      with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl{fabric_.cell_sweeps},
+                    follows() ? "converged" : std::to_string(fabric_.cell_sweeps) + "_sweeps", use);
   }
 
  private:
@@ -206,6 +209,7 @@ class SceneFile {
 struct SceneFile {
   RingStates states;
 
+  [[nodiscard]] bool follows() const { return false; }
   explicit SceneFile(const std::string& file) {
     throw crossbeam::InputError("--scene", file, "",
                                 "only where the benchmarks were configured with toml++ and fmt "

@@ -79,6 +79,7 @@ struct IntegrationInput {
   double mass_damping = 0.02;    ///< [1/ms]
   double bulk_viscosity = 0.06;  ///< linear, on the fibre stretch rates [-]
   Precision precision = Precision::double_;
+  int threads = 1;  ///< that share a step; the result is the same in every bit
 };
 
 struct OutputInput {

@@ -17,10 +17,10 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// CPU time of this thread [s].
-double cpu_seconds() {
+/// CPU time of this thread, or of all threads of the process [s].
+double cpu_seconds(int threads) {
   timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  clock_gettime(threads > 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
@@ -37,11 +37,12 @@ class QuarterDrape {
     const double bound = CrossedBeamCell<double>(c.fabric.cell).membrane_stiffness_bound();
     integrator_.set_speed_limit(
         std::max(std::sqrt(bound / c.fabric.areal_mass), 100 * c.process.speed));
+    integrator_.set_threads(c.integration.threads);
   }
 
   DrapeResult run(const Progress& progress) {
     const auto wall_start = std::chrono::steady_clock::now();
-    const double cpu_start = cpu_seconds();
+    const double cpu_start = cpu_seconds(case_.integration.threads);
     const double dt = case_.integration.step_factor * integrator_.critical_step();
     const double duration = punch_.duration * (1 + case_.process.hold);
     const auto steps = static_cast<std::int64_t>(std::ceil(duration / dt));
@@ -57,6 +58,7 @@ class QuarterDrape {
       if (n % sample_every == 0 || n + 1 == steps) {
         EnergyLedger ledger;
         integrator_.step(&ledger);
+        ++result_.work.steps_sampled;
         book(ledger, stroke);
         check_elements(stroke);
       } else {
@@ -69,12 +71,13 @@ class QuarterDrape {
     Cost& cost = result_.cost;
     cost.steps = steps;
     cost.element_steps = steps * mesh_.element_count();
-    cost.cpu_s = cpu_seconds() - cpu_start;
+    cost.cpu_s = cpu_seconds(case_.integration.threads) - cpu_start;
     cost.wall_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
     cost.ns_per_element_step = 1e9 * cost.cpu_s / static_cast<double>(cost.element_steps);
     cost.time_step_ms = dt;
     for (const auto& block : integrator_.blocks()) result_.cell_fallbacks += block->fallbacks();
+    count_work(steps);
     return std::move(result_);
   }
 
@@ -83,6 +86,16 @@ class QuarterDrape {
     std::vector<ElementSample> samples;
     for (const auto& block : integrator_.blocks()) block->sample(integrator_.state(), samples);
     return samples;
+  }
+
+  void count_work(std::int64_t steps) {
+    WorkCounts& work = result_.work;
+    for (const auto& block : integrator_.blocks()) work.gauss_points += steps * block->points();
+    PackVisits visits;
+    for (const auto& tool : integrator_.tools()) visits += tool->visits();
+    work.contact_culled = visits.culled;
+    work.contact_flat = visits.flat;
+    work.contact_general = visits.general;
   }
 
   void book(const EnergyLedger& ledger, double stroke) {

@@ -175,6 +175,7 @@ void visit_fields(Case& c, Visitor& v) {
   v.real("mass_damping", c.integration.mass_damping, "1/ms", from_to(0, 10));
   v.real("bulk_viscosity", c.integration.bulk_viscosity, "-", from_to(0, 1));
   v.choice("precision", c.integration.precision);
+  v.integer("threads", c.integration.threads, "-", from_to(1, 64));
   v.leave();
 
   v.enter("output");

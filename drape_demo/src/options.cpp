@@ -31,6 +31,7 @@ std::vector<Override> overrides() {
       {"--speed", "process.speed", "M/S", "mean punch speed"},
       {"--friction", "contact.friction", "MU", "Coulomb friction, fabric on tool"},
       {"--precision", "integration.precision", "NAME", "arithmetic"},
+      {"--threads", "integration.threads", "N", "threads that share a step"},
       {"--perturb", "blank.perturbation", "MM", "random start perturbation"},
       {"--seed", "blank.seed", "N", "seed of that perturbation"},
       {"--points", "blank.gauss_points", "N", "integration points of an element"},
@@ -112,14 +113,15 @@ Options parse_options(const std::vector<std::string>& arguments) {
 
   CLI::App app("Drapes a quarter of the double dome with a dry woven fabric.", "crossbeam-drape");
   app.get_formatter()->column_width(28);
-  app.footer("\nPresets set --mesh, --speed and --precision. Measured for the scene realistic, all errors "
-             "together,\nagainst 2.5 mm, 0.5 m/s in double (whose own error of mesh is not in it), and "
+  app.footer("\nPresets set --mesh, --speed and --precision; \"scaled\" also integration.axial_scaling and a "
+             "softer contact,\nwhose yarn tensions are less exact. Measured for the scene realistic, all "
+             "errors together,\nagainst 2.5 mm, 0.5 m/s in double (whose own error of mesh is not in it), and "
              "seconds of one core\n(./run bench precision):\n" +
              preset_table() + footer);
   app.set_version_flag("--version", std::string("crossbeam ") + CROSSBEAM_VERSION);
   app.add_option("--case", case_name, "realistic (default), paper, paper-literal, or a path *.toml")
       ->option_text("NAME");
-  app.add_option("--preset", preset, preset_names() + ": mesh, speed and arithmetic; see below")
+  app.add_option("--preset", preset, preset_names() + ": mesh, speed, arithmetic; see below")
       ->option_text("NAME");
   for (auto& o : list)
     app.add_option(o.option, o.text, fmt::format("{}: {}", o.help, field_range(o.field)))

@@ -41,8 +41,19 @@ struct Frame {
 
 struct Cost {
   std::int64_t steps = 0, element_steps = 0;
-  double cpu_s = 0, wall_s = 0, ns_per_element_step = 0;
+  double cpu_s = 0;  ///< of the thread that runs it; with several threads of the process
+  double wall_s = 0, ns_per_element_step = 0;
   double time_step_ms = 0;  ///< dt used
+};
+
+/// What was counted over the run; the same with any number of threads.
+struct WorkCounts {
+  std::int64_t steps_sampled = 0;  ///< steps with a row of the ledger
+  std::int64_t gauss_points = 0;   ///< evaluated by the steps
+  /// Packs of nodes that the tools asked in the steps: left alone, asked for the height of a flat
+  /// part, asked for all of the surface.
+  std::int64_t contact_culled = 0, contact_flat = 0, contact_general = 0;
+  friend bool operator==(const WorkCounts&, const WorkCounts&) = default;
 };
 
 struct DrapeResult {
@@ -61,6 +72,7 @@ struct DrapeResult {
   double kinetic_over_punch_work_at_95 = 0;  ///< at 95 % of the stroke [-]
   double kinetic_over_internal_at_end = 0;   ///< after the hold [-]
   std::int64_t cell_fallbacks = 0;  ///< second-order cell: element-steps answered by the energy cell
+  WorkCounts work{};
   Cost cost{};
 };
 

@@ -150,7 +150,7 @@ Json references_json(const References& r) {
 }
 
 /// What the scene computes, and what it therefore does without (docs/skipping.md).
-Json work_json(const DrapeCase& c) {
+Json work_json(const DrapeCase& c, const DrapeResult& result) {
   Json used = Json::array(), skipped = Json::array();
   const auto sort = [&](bool is_used, const char* what) { (is_used ? used : skipped).push_back(what); };
   const bool energy_cell = c.fabric.formulation == CellFormulation::energy;
@@ -169,7 +169,17 @@ Json work_json(const DrapeCase& c) {
   sort(!c.contact.culling, "contact of every node with every tool");
   sort(c.output.frames > 0, "output frames");
   sort(c.integration.axial_scaling > 1, "axial scaling");
-  return {{"used", used}, {"skipped", skipped}};
+  const WorkCounts& work = result.work;
+  return {{"used", used},
+          {"skipped", skipped},
+          {"counts",
+           {{"steps", result.cost.steps},
+            {"steps_sampled", work.steps_sampled},
+            {"gauss_points", work.gauss_points},
+            {"contact_packs",
+             {{"culled", work.contact_culled},
+              {"flat", work.contact_flat},
+              {"general", work.contact_general}}}}}};
 }
 
 std::string frame_name(std::size_t frame) { return fmt::format("frames/frame_{:04}.vtu", frame); }
@@ -229,7 +239,7 @@ nlohmann::ordered_json summary_json(const DrapeCase& drape_case, const DrapeResu
                   {"ns_per_element_step", result.cost.ns_per_element_step},
                   {"time_step_ms", result.cost.time_step_ms},
                   {"elements", result.quads.size()}};
-  json["work"] = work_json(drape_case);
+  json["work"] = work_json(drape_case, result);
   json["case"] = case_json(drape_case);
   json["machine"] = machine_json();
   json["build"] = build_json();

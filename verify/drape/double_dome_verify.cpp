@@ -5,15 +5,20 @@
 
 #include "drape.hpp"
 #include "formed_part.hpp"
+#include "presets.hpp"
 #include "references.hpp"
 #include "scene.hpp"
 #include "support/claim.hpp"
+
+#include "crossbeam/base/simd.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -305,6 +310,13 @@ TEST_CASE("V-DRAPE-12 yarns ten times softer along give the same part with longe
         0.1, "mm, change of the draw-in");
   claim("V-DRAPE-12", std::abs(soft.residual_over_punch_work), 1e-3,
         "largest residual over punch work");
+  DrapeCase fast = realistic(5, 2);
+  drape::apply_preset(fast, "fast");
+  REQUIRE(fast.blank.element_size == c.blank.element_size);
+  REQUIRE(fast.process.speed == c.process.speed);
+  REQUIRE(fast.integration.axial_scaling == 25);
+  claim("V-DRAPE-12", largest_change(stiff, run(fast), 8), 0.25,
+        "deg, change at points 1 to 8 by the preset fast, 25 times softer and in float");
 }
 
 // Fibres at 45 deg to the mesh: with 2x2 points an element cannot shear without stretching its yarns
@@ -338,6 +350,40 @@ TEST_CASE("V-DRAPE-08 the same case gives the same bits, with contact culling on
   CHECK(same_bits(first, every_node));
   c.blank.perturbation = 1e-9;
   CHECK_FALSE(same_bits(first, run(c)));  // the comparison can fail
+}
+
+TEST_CASE("V-DRAPE-13 two threads give the same part, and the counts of work add up") {
+  DrapeCase c = realistic(2.5, 8);  // fine enough that there is something to share
+  c.process.stroke = 6;
+  const DrapeResult one = run(c);
+  c.integration.threads = 2;
+  const DrapeResult two = run(c);
+  CHECK(same_bits(one, two));
+  CHECK(one.ledger.back().residual == two.ledger.back().residual);
+  CHECK(one.work == two.work);
+  c.integration.threads = 1;
+  c.blank.perturbation = 1e-9;
+  CHECK_FALSE(same_bits(one, run(c)));  // the comparison can fail
+
+  // Punch, die and holder ask every pack of nodes in every step; all kinds of answer occur.
+  const drape::WorkCounts& work = one.work;
+  const auto lanes = static_cast<std::int64_t>(
+      crossbeam::lanes_v<crossbeam::NativePack<double>>);
+  const auto nodes = static_cast<std::int64_t>(one.frames.back().points.size() / 3);
+  CHECK(work.contact_culled > 0);
+  CHECK(work.contact_flat > 0);
+  CHECK(work.contact_general > 0);
+  claim("V-DRAPE-13",
+        static_cast<double>(std::abs(work.contact_culled + work.contact_flat + work.contact_general -
+                                     3 * one.cost.steps * ((nodes + lanes - 1) / lanes))),
+        0, "visits of packs that are not counted");
+  claim("V-DRAPE-13", static_cast<double>(std::abs(work.gauss_points - one.cost.element_steps)), 0,
+        "Gauss points that are not counted");
+  claim("V-DRAPE-13",
+        static_cast<double>(std::abs(work.steps_sampled - static_cast<std::int64_t>(one.ledger.size()))),
+        0, "sampled steps that are not counted");
+  c.contact.culling = false;
+  CHECK(run(c).work.contact_culled == 0);
 }
 
 // Over the whole stroke half of the runs with this cell stop with an open ledger: it creates energy

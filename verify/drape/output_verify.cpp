@@ -84,6 +84,7 @@ DrapeResult small_result() {
   r.corner = {132.125, 231.25};
   r.residual_over_punch_work = 5e-5;
   r.slack_fraction = 0.4375;
+  r.work = {201, 34567 * 3, 1000, 200, 30};
   r.cost = {34567, 34567 * 3, 4.5, 4.75, 100.5, 1e-3};
   return r;
 }
@@ -401,6 +402,13 @@ TEST_CASE("V-IO-12 summary.json has the promised keys with the run's values") {
   };
   CHECK(lists("used", "bending"));
   CHECK(lists("skipped", "smooth penalty"));
+  const auto& counts = json["work"]["counts"];
+  CHECK(counts["steps"] == 34567);
+  CHECK(counts["steps_sampled"] == 201);
+  CHECK(counts["gauss_points"] == 34567 * 3);
+  CHECK(counts["contact_packs"]["culled"] == 1000);
+  CHECK(counts["contact_packs"]["flat"] == 200);
+  CHECK(counts["contact_packs"]["general"] == 30);
   CHECK(json["cost"]["element_steps"] == 34567 * 3);
   CHECK(json["cost"]["cpu_s"] == 4.5);
   CHECK(json["cost"]["ns_per_element_step"] == 100.5);

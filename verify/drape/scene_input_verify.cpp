@@ -143,6 +143,8 @@ const std::vector<OutOfRange>& out_of_range() {
       {"integration.bulk_viscosity", "-0.1", "", ">= 0"},
       {"integration.bulk_viscosity", "1.1", "", "<= 1"},
       {"integration.precision", "'half'", "", "double or float"},
+      {"integration.threads", "0", "", ">= 1"},
+      {"integration.threads", "65", "", "<= 64"},
       {"output.frames", "0", "", ">= 1"},
       {"output.frames", "10001", "", "<= 10000"},
       {"output.ledger_samples", "1", "", ">= 2"},
@@ -369,6 +371,7 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
   const Options defaults = parse_options({});
   CHECK(defaults.drape_case.name == "realistic");
   CHECK(defaults.drape_case.process.speed == 2);
+  CHECK(defaults.drape_case.integration.threads == 1);
   CHECK(defaults.out == "out/realistic-0");
   CHECK_FALSE(defaults.quiet);
 
@@ -378,7 +381,7 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
                      "200",          "--precision", "float",      "--perturb", "1e-9",
                      "--seed",       "7",           "--points",   "4",         "--cell",
                      "second_order", "--bending",   "off",        "--out",     "somewhere",
-                     "--quiet"})
+                     "--threads",    "2",           "--quiet"})
           .drape_case;
   CHECK(c.name == "paper");
   CHECK(c.blank.layout == 45);
@@ -387,6 +390,7 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
   CHECK(c.contact.friction == 0.3);
   CHECK(c.process.holder_force == 0.2);  // given in N, kept in kN
   CHECK(c.integration.precision == Precision::float_);
+  CHECK(c.integration.threads == 2);
   CHECK(c.blank.perturbation == 1e-9);
   CHECK(c.blank.seed == 7);
   CHECK(c.blank.gauss_points == 4);
@@ -404,6 +408,8 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
     CHECK(c.blank.element_size == preset.element_size);
     CHECK(c.process.speed == preset.speed);
     CHECK(c.integration.precision == preset.precision);
+    CHECK(c.integration.axial_scaling == preset.axial_scaling);
+    CHECK(c.contact.penalty == (preset.penalty > 0 ? preset.penalty : ContactInput{}.penalty));
     CHECK(preset_of(c) == &preset);
     CHECK(preset.error.position > 0);
     CHECK(preset.processor_s > 0);
@@ -413,6 +419,9 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
   const DrapeCase changed = parse_options({"--preset", "fast", "--speed", "3"}).drape_case;
   CHECK(changed.process.speed == 3);
   CHECK(preset_of(changed) == nullptr);
+  DrapeCase stiffer = parse_options({"--preset", "fast"}).drape_case;
+  stiffer.contact.penalty = ContactInput{}.penalty;
+  CHECK(preset_of(stiffer) == nullptr);
   CHECK(preset_of(parse_options({}).drape_case) == nullptr);
 
   check_contains(parse_options({"--help"}).message, {"--case", "[m/s]", "0 or 45", "Examples"});
@@ -431,6 +440,8 @@ TEST_CASE("V-IO-07 a bad option is refused by its name, value and range") {
                  {"--preset = best", "fast, standard or accurate"});
   check_contains(options_refusal({"--layout", "30"}), {"--layout = 30 [deg]", "0 or 45"});
   check_contains(options_refusal({"--points", "2"}), {"--points = 2", "1 or 4"});
+  check_contains(options_refusal({"--threads", "0"}), {"--threads = 0", ">= 1 and <= 64"});
+  check_contains(options_refusal({"--threads", "two"}), {"--threads = two", ">= 1 and <= 64"});
   check_contains(options_refusal({"--mesh", "100"}), {"--mesh = 100 [mm]", "67.5"});
   check_contains(options_refusal({"--holder", "1e5"}), {"--holder = 1e5 [N]", "<= 10000"});
   check_contains(options_refusal({"--holder", "x"}), {"--holder = x [N]", "<= 10000"});

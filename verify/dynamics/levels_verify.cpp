@@ -72,6 +72,7 @@ struct Strip {
 struct End {
   Points x;
   double viscous = 0, tool_work = 0, friction = 0, kinetic = 0;
+  PackVisits visits{};
 };
 
 template <class Run>
@@ -85,6 +86,7 @@ End finish(Run run, int steps, int threads, double factor = 0.9) {
   if (run.tools().empty()) return out;
   out.tool_work = run.tools()[0]->work().tool;
   out.friction = run.tools()[1]->work().friction;
+  for (const auto& tool : run.tools()) out.visits += tool->visits();
   return out;
 }
 
@@ -93,7 +95,7 @@ int different(const End& a, const End& b) {
   for (std::size_t n = 0; n < a.x.size(); ++n)
     count += std::memcmp(a.x[n].data(), b.x[n].data(), 3 * sizeof(double)) != 0;
   return count + (a.viscous != b.viscous) + (a.tool_work != b.tool_work) +
-         (a.friction != b.friction) + (a.kinetic != b.kinetic);
+         (a.friction != b.friction) + (a.kinetic != b.kinetic) + !(a.visits == b.visits);
 }
 
 /// The same scheme without levels: every force of the step, then every node.
@@ -132,7 +134,13 @@ TEST_CASE("V-DYN-10 levels, bands and any number of threads give the same step")
   REQUIRE(different(one, finish(strip.run(law, 0.0600001), 400, 1)) > 0);  // can fail
   for (const int threads : {2, 3, 4})
     claim("V-DYN-10", different(one, finish(strip.run(law), 400, threads)), 0,
-          "nodes and works that differ in any bit, " + std::to_string(threads) + " threads");
+          "nodes, works and visits that differ in any bit, " + std::to_string(threads) + " threads");
+  // Two tools asked every pack of nodes in each of 401 steps.
+  REQUIRE(one.visits.culled > 0);
+  REQUIRE(one.visits.general > 0);
+  const auto packs = static_cast<long long>((one.x.size() + 3) / 4);
+  claim("V-DYN-10", static_cast<double>(std::abs(one.visits.all() - 401 * 2 * packs)), 0,
+        "visits of tools that are not counted");
 
   // Against the whole step at once: the order of a node's sums differs where bands meet.
   auto whole = strip.run(law);

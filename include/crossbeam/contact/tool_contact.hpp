@@ -87,6 +87,22 @@ struct ContactWork {
   double damping = 0;   ///< taken by contact and tool damping
 };
 
+/// How often packs of nodes were asked by a tool, by what was spent on them.
+struct PackVisits {
+  long long culled = 0;   ///< nothing: they cannot have reached the tool
+  long long flat = 0;     ///< the height of its flat part
+  long long general = 0;  ///< all of its surface
+
+  [[nodiscard]] long long all() const { return culled + flat + general; }
+  PackVisits& operator+=(const PackVisits& other) {
+    culled += other.culled;
+    flat += other.flat;
+    general += other.general;
+    return *this;
+  }
+  friend bool operator==(const PackVisits&, const PackVisits&) = default;
+};
+
 /// The tool as the time integration sees it.
 template <class R>
 class ToolContact {
@@ -130,6 +146,7 @@ class ToolContact {
     for (const PartSums& p : parts_) {
       force_ = force_ + p.force;
       stored_ += p.stored;
+      visits_ += p.visits;
     }
   }
   /// Power of the forces on these nodes, for book_tool.
@@ -214,6 +231,8 @@ class ToolContact {
   [[nodiscard]] const ContactWork& work() const { return work_; }
   /// Kinetic energy of a free tool at t_n, as v_{n-1/2} v_{n+1/2} m/2; after advance.
   [[nodiscard]] double kinetic_energy() const { return motion_.mass * v_minus_ * v_plus_ / 2; }
+  /// In all evaluations of the forces up to now.
+  [[nodiscard]] const PackVisits& visits() const { return visits_; }
   /// Sum of the forces on the fabric at t_n [kN].
   [[nodiscard]] const Vec3<double>& force_on_fabric() const { return force_; }
 
@@ -230,9 +249,11 @@ class ToolContact {
   bool moved_ = false;
   Vec3<double> force_{};
   double stored_ = 0;
+  PackVisits visits_;
   struct PartSums {
     Vec3<double> force{};
     double stored = 0;
+    PackVisits visits;
     /// Powers of the forces booked last, and the forces along z.
     double friction_power = 0, friction_z = 0, damping_power = 0, damping_z = 0;
   };
@@ -281,10 +302,14 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     step.velocity = T(static_cast<R>(this->v_plus_));
     step.velocity_now = T(static_cast<R>(this->predicted_velocity()));
     Sums sums;
+    PackVisits visits;
     const T zero(R(0));
     for (int n = part.first; n < part.last; n += lanes) {
       const int b = n / lanes;
-      if (parameters_.culling && travel < safe_until_[b]) continue;
+      if (parameters_.culling && travel < safe_until_[b]) {
+        ++visits.culled;
+        continue;
+      }
       const T area = T::load(state.area.data() + n);
       Vec3<Wide> x = load<Wide>(state.x, n);
       x.z = x.z - step.z;
@@ -292,9 +317,11 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       const auto real = area > zero;
       if constexpr (HasFlatPart<Shape, T>)
         if (parameters_.region_classes && all(shape_.in_flat_part(p) || !real)) {
+          ++visits.flat;
           touch<true>(state, n, travel, step, area, p, sums);
           continue;
         }
+      ++visits.general;
       touch<false>(state, n, travel, step, area, p, sums);
     }
     auto& out = this->parts_[part.number];
@@ -302,6 +329,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
                  static_cast<double>(lane_sum(sums.force.y)),
                  static_cast<double>(lane_sum(sums.force.z))};
     out.stored = static_cast<double>(lane_sum(sums.energy));
+    out.visits = visits;
   }
 
   void book_nodes(const NodalState<R>& state, double a, double b,
