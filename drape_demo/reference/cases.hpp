@@ -14,7 +14,6 @@
 
 #include <ctime>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,19 +38,13 @@ struct Case {
   [[nodiscard]] FormedState formed() const { return formed_state(model, mesh, nx, ny); }
 };
 
+/// The cases and their runs are compiled once, in cases.cpp: R is double or float, the integrators
+/// are those of SUNDIALS that the programs compare.
 template <class R>
-Case<R> sphere_case(const SphereSheet& sheet) {
-  return {sheet.model<R>(), sheet.mesh(), sheet.elements, sheet.elements, 1.2 * sheet.duration};
-}
+Case<R> sphere_case(const SphereSheet& sheet);
 
 template <class R>
-Case<R> dome_case(const DrapeCase& c) {
-  QuarterModel<R> quarter(c);
-  const int nx = quarter.grid().nx, ny = quarter.grid().ny;
-  const double duration = quarter.punch().duration * (1 + c.process.hold);
-  Mesh<4> mesh = quarter.mesh();
-  return {quarter.release(), std::move(mesh), nx, ny, duration};
-}
+Case<R> dome_case(const DrapeCase& c);
 
 /// The scene `realistic` with contact and friction in rate form: a penalty that sets in over
 /// 0.05 mm, friction that is full from a tenth of the punch's speed on.
@@ -72,37 +65,11 @@ struct Frames {
 };
 
 template <class Integrator>
-Frames integrate(Case<double> c, const reference::Tolerances& tolerances) {
-  const double begin = processor_seconds();
-  Integrator integrator(c.model, tolerances);
-  Frames out;
-  for (int k = 1; k <= 10; ++k) {
-    integrator.advance(c.duration * k / 10);
-    out.at.push_back(c.formed());
-  }
-  out.processor_s = processor_seconds() - begin;
-  out.steps = integrator.statistics().steps;
-  out.evaluations = integrator.statistics().evaluations;
-  return out;
-}
+Frames integrate(Case<double> c, const reference::Tolerances& tolerances);
 
 /// @param step_factor of the proven critical step; made a little shorter to hit the ten times
 template <class R>
-Frames explicit_run(Case<R> c, double step_factor) {
-  const double begin = processor_seconds();
-  CentralDifference<NativePack<R>> run(std::move(c.model));
-  const double least = step_factor * run.critical_step();
-  const long steps = static_cast<long>(std::ceil(c.duration / 10 / least));
-  run.start(c.duration / 10 / static_cast<double>(steps));
-  Frames out;
-  for (int k = 1; k <= 10; ++k) {
-    for (long i = 0; i < steps; ++i) run.step();
-    out.at.push_back(formed_state(run.model(), c.mesh, c.nx, c.ny));
-  }
-  out.processor_s = processor_seconds() - begin;
-  out.steps = out.evaluations = run.steps();
-  return out;
-}
+Frames explicit_run(Case<R> c, double step_factor);
 
 /// The worst of each measure over the ten times.
 inline Errors compare(const Frames& a, const Frames& b) {
