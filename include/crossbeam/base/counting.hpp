@@ -146,6 +146,10 @@ struct ScalarTraits<Counting<T>> {
   static constexpr int lanes = 1;
   static constexpr int derivative_order = 0;
 };
+template <>
+struct DoubleLanes<Counting<float>> {
+  using type = Counting<double>;
+};
 
 }  // namespace crossbeam
 

@@ -62,6 +62,14 @@ using passive_t = typename ScalarTraits<T>::Passive;
 template <class T>
 inline constexpr int lanes_v = ScalarTraits<T>::lanes;
 
+/// As many lanes of double as T has: what positions are moved in. Specialised by packs.
+template <class T>
+struct DoubleLanes {
+  using type = T;
+};
+template <class T>
+using double_lanes_t = typename DoubleLanes<T>::type;
+
 /// Value without derivatives; overloaded for dual numbers.
 template <class T>
   requires(ScalarTraits<T>::derivative_order == 0)

@@ -297,17 +297,10 @@ struct ScalarTraits<Pack<S, N>> {
   static constexpr int derivative_order = 0;
 };
 
-/// As many lanes of double as T has: what positions are moved in.
-template <class T>
-struct DoubleLanes {
-  using type = T;
-};
 template <int N>
 struct DoubleLanes<Pack<float, N>> {
   using type = Pack<double, N>;
 };
-template <class T>
-using double_lanes_t = typename DoubleLanes<T>::type;
 
 /// T itself or half of it, so that as many doubles fill one register: what differences of positions are
 /// formed in.
@@ -326,12 +319,13 @@ using difference_lanes_t = typename DifferenceLanes<T>::type;
 /// The same numbers in the precision of T, rounded to nearest.
 template <class T, class U>
 CROSSBEAM_HOST_INLINE T convert(const U& x) {
-  if constexpr (std::is_same_v<T, U>)
+  if constexpr (std::is_same_v<T, U>) {
     return x;
-  else if constexpr (lanes_v<T> == 1)
-    return T(x[0]);
-  else
+  } else if constexpr (lanes_v<T> == 1) {
+    return T(static_cast<real_t<T>>(x[0]));
+  } else {
     return T(__builtin_convertvector(x.v, typename T::Vector));
+  }
 }
 template <class T, class U>
 CROSSBEAM_HOST_INLINE Vec3<T> convert(const Vec3<U>& v) {
