@@ -404,13 +404,13 @@ TEST_CASE("V-IO-07 command-line options set the fields they name, over the scene
 
   // A preset sets mesh, speed and arithmetic; an option beside it wins, and then it is no preset.
   for (const Preset& preset : presets) {
-    const DrapeCase c = parse_options({"--preset", preset.name}).drape_case;
-    CHECK(c.blank.element_size == preset.element_size);
-    CHECK(c.process.speed == preset.speed);
-    CHECK(c.integration.precision == preset.precision);
-    CHECK(c.integration.axial_scaling == preset.axial_scaling);
-    CHECK(c.contact.penalty == (preset.penalty > 0 ? preset.penalty : ContactInput{}.penalty));
-    CHECK(preset_of(c) == &preset);
+    const DrapeCase chosen = parse_options({"--preset", preset.name}).drape_case;
+    CHECK(chosen.blank.element_size == preset.element_size);
+    CHECK(chosen.process.speed == preset.speed);
+    CHECK(chosen.integration.precision == preset.precision);
+    CHECK(chosen.integration.axial_scaling == preset.axial_scaling);
+    CHECK(chosen.contact.penalty == (preset.penalty > 0 ? preset.penalty : ContactInput{}.penalty));
+    CHECK(preset_of(chosen) == &preset);
     CHECK(preset.error.position > 0);
     CHECK(preset.processor_s > 0);
     check_contains(parse_options({"--help"}).message,
