@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Gauss points whose cells are followed from step to step, in the short loops of the sweep
-/// (MembraneSweep): strain to stress, or corner positions to corner forces of the one-point
+/// Gauss points whose cells are followed from step to step, in the short loops that the sweep calls
+/// (PointRows): strain to stress, or corner positions to corner forces of the one-point
 /// quadrilateral without hourglass control.
 ///
 /// Every entry of the ring remembers its heights, and its strain moves by one time step between two
@@ -14,12 +14,13 @@
 #include "support/work.hpp"
 
 #include "crossbeam/cell/crossed_beam.hpp"
-#include "crossbeam/law/woven_membrane.hpp"
+#include "crossbeam/dynamics/point_rows.hpp"
 #include "crossbeam/mesh/batches.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace bench {
 
@@ -38,38 +39,19 @@ class FollowedPoints {
   static_assert(ring_size % block == 0);
 
   FollowedPoints(const Law& law, const RingStates& states)
-      : law_(law), rings_{Ring<R>(states), Ring<R>(one_step_later(states))} {
-    for (auto& w : heights_) w.resize(ring_size);
+      : law_(law),
+        rings_{Ring<R>(states), Ring<R>(one_step_later(states))},
+        heights_(2 * ring_size) {
     for (std::size_t k = 0; k < ring_size; ++k) {
       const auto at = law_.cell().solve(rings_[0].u1[k], rings_[0].u2[k]);
-      heights_[0][k] = at.forces.w1;
-      heights_[1][k] = at.forces.w2;
+      const std::size_t pack = k / lanes * 2 * lanes, lane = k % lanes;
+      heights_[pack + lane] = at.forces.w1;
+      heights_[pack + lanes + lane] = at.forces.w2;
     }
   }
 
-  /// What the loops hand on to each other.
-  struct Block {
-    struct Buffer {
-      alignas(64) R number[block];
-      CROSSBEAM_INLINE T load(int i) const { return load_at<T>(number + i); }
-      CROSSBEAM_INLINE void store(int i, const T& value) { store_at(number + i, value); }
-    };
-    struct Vectors {
-      Buffer x, y, z;
-      CROSSBEAM_INLINE crossbeam::Vec3<T> load(int i) const {
-        return {x.load(i), y.load(i), z.load(i)};
-      }
-      CROSSBEAM_INLINE void store(int i, const crossbeam::Vec3<T>& v) {
-        x.store(i, v.x);
-        y.store(i, v.y);
-        z.store(i, v.z);
-      }
-    };
-    Vectors f1, f2, corner[Quad::corners];
-    Buffer b11, b22, b12, u1, u2, inv1, inv2, m11, m22, m12;
-    struct {
-      Buffer g, D, F, k_Lh;
-    } yarn[2];
+  struct Block : crossbeam::PointRows<T, block> {
+    typename Block::VectorRow corner[Quad::corners];
   };
 
   /// All points at the strains of one ring. `use(first, block)` looks at the answers of every block.
@@ -87,53 +69,8 @@ class FollowedPoints {
 
  private:
   CROSSBEAM_INLINE void evaluate(const Law& law, const Ring<R>& ring, int first, Block& at) {
-    using crossbeam::FibreStrain;
     for (int i = 0; i < block; i += lanes) strain_point(law, ring, first + i, i, at);
-    for (int i = 0; i < block; i += lanes) {
-      T u1, u2, inv1, inv2;
-      law.elongate(at.b11.load(i), at.b22.load(i), u1, u2, inv1, inv2);
-      at.u1.store(i, u1);
-      at.u2.store(i, u2);
-      at.inv1.store(i, inv1);
-      at.inv2.store(i, inv2);
-    }
-    for (int y = 0; y < 2; ++y) {
-      const auto& yarn = y == 0 ? law.cell().warp() : law.cell().weft();
-      const auto& u = y == 0 ? at.u1 : at.u2;
-      auto& out = at.yarn[y];
-      for (int i = 0; i < block; i += lanes) {
-        const auto force =
-            law.cell().evaluate_yarn(yarn, u.load(i), load<T>(heights_[y], first + i));
-        out.g.store(i, force.g);
-        out.D.store(i, force.D);
-        out.F.store(i, force.F);
-        out.k_Lh.store(i, force.k_Lh);
-      }
-    }
-    const auto yarn = [&](int y, int i) {
-      const auto& from = at.yarn[y];
-      return crossbeam::FollowedYarn<T>{from.g.load(i), from.D.load(i), from.F.load(i),
-                                        from.k_Lh.load(i)};
-    };
-    for (int i = 0; i < block; i += lanes) {
-      crossbeam::CrimpHeights<T> heights{load<T>(heights_[0], first + i),
-                                         load<T>(heights_[1], first + i)};
-      T m11, m22;
-      law.follow(at.u1.load(i), at.u2.load(i), at.inv1.load(i), at.inv2.load(i), yarn(0, i),
-                 yarn(1, i), heights, m11, m22);
-      store_at(heights_[0].data() + first + i, heights.w1);
-      store_at(heights_[1].data() + first + i, heights.w2);
-      at.m11.store(i, m11);
-      at.m22.store(i, m22);
-    }
-    for (int i = 0; i < block; i += lanes) {
-      const auto m =
-          law.with_shear(FibreStrain<T>{at.b11.load(i), at.b22.load(i), at.b12.load(i)},
-                         at.inv1.load(i), at.inv2.load(i), at.m11.load(i), at.m22.load(i));
-      at.m11.store(i, m.m11);
-      at.m22.store(i, m.m22);
-      at.m12.store(i, m.m12);
-    }
+    at.follow(law, block, heights_.data() + 2 * first, 2 * lanes);
     if constexpr (chain == Chain::corners_to_forces)
       for (int i = 0; i < block; i += lanes) collect_point(i, at);
   }
@@ -153,15 +90,13 @@ class FollowedPoints {
     } else {
       beta = {load<T>(ring.b11, k), load<T>(ring.b22, k), load<T>(ring.b12, k)};
     }
-    at.b11.store(i, beta.b11);
-    at.b22.store(i, beta.b22);
-    at.b12.store(i, beta.b12);
+    at.store_strain(i, beta);
   }
 
   CROSSBEAM_INLINE void collect_point(int i, Block& at) {
     crossbeam::Vec3<T> force[Quad::vectors]{}, corner[Quad::corners];
-    add_point_forces(Kinematics(at.f1.load(i), at.f2.load(i)),
-                     {at.m11.load(i), at.m22.load(i), at.m12.load(i)}, element_.point[0], force);
+    add_point_forces(Kinematics(at.f1.load(i), at.f2.load(i)), at.stress(i), element_.point[0],
+                     force);
     Quad::corner_forces(force, corner);
     for (std::size_t a = 0; a < Quad::corners; ++a) at.corner[a].store(i, corner[a]);
   }
@@ -171,7 +106,7 @@ class FollowedPoints {
   Law law_;
   UnitElement<T, Quad> element_;
   std::array<Ring<R>, 2> rings_;
-  std::array<crossbeam::AlignedArray<R>, 2> heights_;
+  crossbeam::AlignedArray<R> heights_;  // of a pack: warp, weft
 };
 
 namespace detail {
@@ -219,9 +154,10 @@ double following_error(FollowedPoints<T, Law, chain>& points, const Law& law) {
 
 /// Times the points over both rings by turns, once their answers are those of the converged law to
 /// 1e-7 as a strain of the yarn, the error of [C-14].
-template <class T, Chain chain, class Law>
+template <class Number, Chain chain, class Law>
 void time_followed(benchmark::State& state, const Law& law, const RingStates& states) {
-  using R = crossbeam::real_t<T>;
+  using R = crossbeam::real_t<Number>;
+  using T = std::conditional_t<std::is_same_v<Number, R>, crossbeam::Pack<R, 1>, Number>;
   FollowedPoints<T, Law, chain> points(law, states);
   if (!(detail::following_error(points, law) <= 1e-7))
     return state.SkipWithError("the followed cells differ from the converged ones");

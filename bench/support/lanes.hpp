@@ -1,32 +1,19 @@
 #pragma once
 /// @file
-/// One way between a number and an array, whatever number it is: a scalar, a pack, or a dual number.
+/// One way to fill a number from an array, whatever it is: a scalar, a pack, or a dual number.
 
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/mesh/arrays.hpp"
 
 namespace bench {
 
-/// As many values as T has lanes.
-template <class T>
-CROSSBEAM_INLINE T load_at(const crossbeam::real_t<T>* from) {
-  if constexpr (crossbeam::lanes_v<T> == 1)
-    return T(*from);
-  else
-    return T::load(from);
-}
-template <class T>
-CROSSBEAM_INLINE void store_at(crossbeam::real_t<T>* to, const T& value) {
-  if constexpr (crossbeam::lanes_v<T> == 1)
-    *to = static_cast<crossbeam::real_t<T>>(value);
-  else
-    value.store(to);
-}
-
-/// Values from `first` on.
+/// Values from `first` on, as many as T has lanes.
 template <class T>
 CROSSBEAM_INLINE T load(const crossbeam::AlignedArray<crossbeam::real_t<T>>& from, int first) {
-  return load_at<T>(from.data() + first);
+  if constexpr (crossbeam::lanes_v<T> == 1)
+    return T(from[static_cast<std::size_t>(first)]);
+  else
+    return T::load(from.data() + first);
 }
 
 /// The same as variable number `index` of a dual number.

@@ -7,6 +7,7 @@
 #include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/dynamics/membrane_tangent.hpp"
+#include "crossbeam/dynamics/point_rows.hpp"
 #include "crossbeam/mesh/batches.hpp"
 
 #include <Eigen/Cholesky>
@@ -308,33 +309,12 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   using View = typename Batches::template View<U>;
 
   /// What the loops over one run hand on to each other: it stays in the first-level cache.
-  struct Work {
-    static constexpr int size = Batches::run_capacity;
-    struct Buffer {
-      alignas(64) R number[size];
-      CROSSBEAM_INLINE T load(int i) const { return T::load(number + i); }
-      CROSSBEAM_INLINE void store(int i, const T& value) { value.store(number + i); }
-      template <class Mask>
-      CROSSBEAM_INLINE void rest(int i, const Mask& active) {
-        store(i, select(active, load(i), T(R(0))));
-      }
-    };
-    struct Vectors {
-      Buffer x, y, z;
-      CROSSBEAM_INLINE Vec3<T> load(int i) const { return {x.load(i), y.load(i), z.load(i)}; }
-      CROSSBEAM_INLINE void store(int i, const Vec3<T>& v) {
-        x.store(i, v.x);
-        y.store(i, v.y);
-        z.store(i, v.z);
-      }
-    };
-    Vectors D[K], force[K];   ///< relative vectors, generalised forces: of more than one point
-    Vectors hourglass;        ///< its force
-    Vectors f1, f2;           ///< of the present point
-    Buffer b11, b22, b12, inv1, inv2, u1, u2, m11, m22, m12;
-    struct {
-      Buffer g, D, F, k_Lh;
-    } yarn[2];
+  struct Work : PointRows<T, Batches::run_capacity> {
+    using Rows = PointRows<T, Batches::run_capacity>;
+    using typename Rows::Row;
+    using typename Rows::VectorRow;
+    VectorRow D[K], force[K];  ///< relative vectors, generalised forces: of more than one point
+    VectorRow hourglass;       ///< its force
     RunVectors<corners, corners, T> corner;
     typename Batches::template Gathered<Wide> positions;
     typename Batches::template Gathered<T> velocities;
@@ -344,9 +324,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     /// @param i place of lane 0 in the run; @param active the lanes with a tuple
     template <class Mask>
     void rest(int i, const Mask& active) {
-      for (Vectors* v : {&hourglass, &f1, &f2})
-        for (Buffer* component : {&v->x, &v->y, &v->z}) component->rest(i, active);
-      for (Buffer* strain : {&b11, &b22, &b12}) strain->rest(i, active);
+      for (VectorRow* v : {&hourglass, &this->f1, &this->f2})
+        for (Row* component : {&v->x, &v->y, &v->z}) component->rest(i, active);
+      for (Row* strain : {&this->b11, &this->b22, &this->b12}) strain->rest(i, active);
     }
   };
 
@@ -443,9 +423,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       const FibreStrain<T> beta = kinematics.strain(cosine);
       work.f1.store(i, kinematics.f1);
       work.f2.store(i, kinematics.f2);
-      work.b11.store(i, beta.b11);
-      work.b22.store(i, beta.b22);
-      work.b12.store(i, beta.b12);
+      work.store_strain(i, beta);
     }
   }
 
@@ -456,7 +434,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     Constants c = constants(run, p);
     for (int i = 0; i < end; i += lanes, c.next()) {
       const PointKinematics<T, M, K> kinematics(work.f1.load(i), work.f2.load(i));
-      const FibreStress<T> m{work.m11.load(i), work.m22.load(i), work.m12.load(i)};
+      const FibreStress<T> m = work.stress(i);
       Vec3<T> force[K];
       point_forces(kinematics, m, c.point(), force);
       if constexpr (Element::points > 1) {
@@ -492,58 +470,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
                                  [[maybe_unused]] StageSums& sums) {
     const int end = run.batches * lanes;
     if constexpr (follows) {
-      for (int i = 0; i < end; i += lanes) {
-        T u1, u2, inv1, inv2;
-        law.elongate(work.b11.load(i), work.b22.load(i), u1, u2, inv1, inv2);
-        work.u1.store(i, u1);
-        work.u2.store(i, u2);
-        work.inv1.store(i, inv1);
-        work.inv2.store(i, inv2);
-      }
-      const auto& cell = law.cell();
-      R* const heights_begin = heights_.data(run.first_batch) + 2 * p * lanes;
-      const std::size_t stride = heights_.stride();
-      for (int y = 0; y < 2; ++y) {
-        const auto& yarn = y == 0 ? cell.warp() : cell.weft();
-        const auto& u = y == 0 ? work.u1 : work.u2;
-        auto& out = work.yarn[y];
-        const R* height = heights_begin + y * lanes;
-        for (int i = 0; i < end; i += lanes, height += stride) {
-          const auto at = cell.evaluate_yarn(yarn, u.load(i), T::load(height));
-          out.g.store(i, at.g);
-          out.D.store(i, at.D);
-          out.F.store(i, at.F);
-          out.k_Lh.store(i, at.k_Lh);
-        }
-      }
-      const auto yarn = [&](int y, int i) CROSSBEAM_INLINE_LAMBDA {
-        const auto& from = work.yarn[y];
-        return FollowedYarn<T>{
-            from.g.load(i), from.D.load(i), from.F.load(i), from.k_Lh.load(i)};
-      };
-      R* height = heights_begin;
-      for (int i = 0; i < end; i += lanes, height += stride) {
-        CrimpHeights<T> heights{T::load(height), T::load(height + lanes)};
-        T m11, m22;
-        law.follow(work.u1.load(i), work.u2.load(i), work.inv1.load(i), work.inv2.load(i),
-                   yarn(0, i), yarn(1, i), heights, m11, m22);
-        heights.w1.store(height);
-        heights.w2.store(height + lanes);
-        work.m11.store(i, m11);
-        work.m22.store(i, m22);
-      }
-      for (int i = 0; i < end; i += lanes) {
-        const FibreStress<T> m = law.with_shear(
-            FibreStrain<T>{work.b11.load(i), work.b22.load(i), work.b12.load(i)},
-            work.inv1.load(i), work.inv2.load(i), work.m11.load(i), work.m22.load(i));
-        work.m11.store(i, m.m11);
-        work.m22.store(i, m.m22);
-        work.m12.store(i, m.m12);
-      }
+      work.follow(law, end, heights_.data(run.first_batch) + 2 * p * lanes, heights_.stride());
     } else {
       for (int k = 0, i = 0; k < run.batches; ++k, i += lanes) {
         const int b = run.first_batch + k;
-        const FibreStrain<T> beta{work.b11.load(i), work.b22.load(i), work.b12.load(i)};
+        const FibreStrain<T> beta = work.strain(i);
         const auto at = law.evaluate(beta);
         if constexpr (!has_energy)
           book_path(b, p, load_point(b, p), beta, at, batches_.active(batches_[b]), sums);
@@ -551,9 +482,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         const InverseStretches<T> inv(at.fibres.lambda1, at.fibres.lambda2);
         work.inv1.store(i, inv.first);
         work.inv2.store(i, inv.second);
-        work.m11.store(i, m.m11);
-        work.m22.store(i, m.m22);
-        work.m12.store(i, m.m12);
+        work.store_stress(i, m);
       }
     }
   }
