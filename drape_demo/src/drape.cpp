@@ -49,20 +49,26 @@ class QuarterDrape {
     const std::int64_t sample_every = std::max<std::int64_t>(1, steps / case_.output.ledger_samples);
     const std::int64_t frame_every =
         case_.output.frames > 0 ? std::max<std::int64_t>(1, steps / case_.output.frames) : steps + 1;
+    constexpr std::int64_t update_every = 128;
     integrator_.start(dt);
-    for (std::int64_t n = 0; n < steps; ++n) {
+    for (std::int64_t n = 0; n < steps;) {
       const double stroke = punch_(integrator_.time());
       if (n % frame_every == 0) result_.frames.push_back(frame(stroke));
-      if (n % 128 == 0)
+      if (n % update_every == 0)
         progress.update(static_cast<double>(n) / static_cast<double>(steps), stroke);
       if (n % sample_every == 0 || n + 1 == steps) {
         EnergyLedger ledger;
         integrator_.step(&ledger);
+        ++n;
         ++result_.work.steps_sampled;
         book(ledger, stroke);
         check_elements(stroke);
       } else {
-        integrator_.step();
+        std::int64_t next = steps - 1;
+        for (const std::int64_t every : {frame_every, update_every, sample_every})
+          next = std::min(next, (n / every + 1) * every);
+        integrator_.advance(next - n);
+        n = next;
       }
     }
     result_.frames.push_back(frame(punch_(integrator_.time())));

@@ -112,7 +112,7 @@ class ToolContact {
   /// @throws InputError (validate)
   explicit ToolContact(ToolMotion motion) : motion_(std::move(motion)) {
     validate(motion_);
-    z_ = motion_.is_free() ? motion_.start : motion_.position(0);
+    now_.z = motion_.is_free() ? motion_.start : motion_.position(0);
   }
 
   /// Contact forces at t_n: adds them to state.f and keeps them for the bookkeeping.
@@ -132,18 +132,25 @@ class ToolContact {
   /// @name The same for a part of the nodes at a time, all of which have to be asked for once. Parts
   /// may be asked for by several threads; what they sum up is added in their order, tag [S-5].
   /// @{
+  /// Several steps may be in flight, tag [S-6]: `flight` 0, 1, ... counts them, each is begun where
+  /// `advance` has taken the tool before, and they end in their order.
   struct Part {
     int first, last;  ///< nodes: multiples of the pack width, or the node count
     int number;       ///< 0 to parts - 1
+    int flight = 0;
   };
-  /// Forgets the forces of the last step.
-  virtual void begin_forces(int parts) { parts_.assign(static_cast<std::size_t>(parts), {}); }
+  /// A step's forces in the making.
+  virtual void begin_forces(int parts, int flight = 0) {
+    if (static_cast<int>(flights_.size()) <= flight) flights_.resize(flight + 1);
+    flights_[flight].at = now_;
+    flights_[flight].parts.assign(static_cast<std::size_t>(parts), {});
+  }
   virtual void add_forces(NodalState<R>& state, double dt, double travel, const Part& part) = 0;
   /// Sums of the forces of all parts.
-  void end_forces() {
+  void end_forces(int flight = 0) {
     force_ = {};
     stored_ = 0;
-    for (const PartSums& p : parts_) {
+    for (const PartSums& p : flights_[flight].parts) {
       force_ = force_ + p.force;
       stored_ += p.stored;
       visits_ += p.visits;
@@ -152,10 +159,12 @@ class ToolContact {
   /// Power of the forces on these nodes, for book_tool.
   virtual void book_nodes(const NodalState<R>& state, double a, double b, const Part& part) = 0;
   /// Books the nodes' powers and the work at the tool itself; after `advance`.
-  void book_tool(double a, double b, double weight) {
-    const double v = velocity(a, b);
+  void book_tool(double a, double b, double weight, int flight = 0) {
+    const Kinematics& tool = flights_[flight].after;
+    const double v = tool.velocity(a, b);
     double friction = 0, damping = 0;
-    for (PartSums& p : parts_) {  // against the tool: its velocity is taken off all nodes at once
+    // Against the tool: its velocity is taken off all nodes at once.
+    for (const PartSums& p : flights_[flight].parts) {
       friction += p.friction_power - p.friction_z * v;
       damping += p.damping_power - p.damping_z * v;
     }
@@ -164,7 +173,7 @@ class ToolContact {
     if (motion_.is_free()) {
       work_.tool += applied_ * v * weight;
       work_.damping +=
-          motion_.mass * motion_.damping_rate * (v_minus_ + v_plus_) / 2 * v * weight;
+          motion_.mass * motion_.damping_rate * (tool.v_minus + tool.v_plus) / 2 * v * weight;
     } else {
       work_.tool += force_.z * v * weight;
     }
@@ -193,26 +202,28 @@ class ToolContact {
   virtual double add_rest_forces(NodalState<R>& state, int tool_row, TangentEntries* tangent) const = 0;
   /// @}
 
-  /// Moves the tool from t_n to t_{n+1}; after add_forces, before book.
+  /// Moves the tool from t_n to t_{n+1}: before book, and a free one after end_forces.
   /// @return distance moved [mm]
-  double advance(double t, double dt) {
-    v_minus_ = v_plus_;
+  double advance(double t, double dt, int flight = 0) {
+    Kinematics& tool = now_;
+    tool.v_minus = tool.v_plus;
     if (motion_.is_free()) {
       applied_ = motion_.force(t);
       const double a = motion_.damping_rate;
       // At rest at t = 0: v_{-1/2} as for the nodes.
-      if (!moved_) v_minus_ = -dt / 2 * (applied_ - force_.z) / motion_.mass;
-      v_plus_ = ((1 - a * dt / 2) * v_minus_ + dt * (applied_ - force_.z) / motion_.mass) /
-                (1 + a * dt / 2);
-      z_ += dt * v_plus_;
+      if (!moved_) tool.v_minus = -dt / 2 * (applied_ - force_.z) / motion_.mass;
+      tool.v_plus = ((1 - a * dt / 2) * tool.v_minus + dt * (applied_ - force_.z) / motion_.mass) /
+                    (1 + a * dt / 2);
+      tool.z += dt * tool.v_plus;
     } else {
       const double z = motion_.position(t + dt);
-      v_plus_ = (z - z_) / dt;
-      if (!moved_) v_minus_ = v_plus_;
-      z_ = z;
+      tool.v_plus = (z - tool.z) / dt;
+      if (!moved_) tool.v_minus = tool.v_plus;
+      tool.z = z;
     }
     moved_ = true;
-    return std::abs(v_plus_) * dt;
+    flights_[flight].after = tool;
+    return std::abs(tool.v_plus) * dt;
   }
 
   /// Forgets what is known about clearances: `travel` begins anew.
@@ -221,35 +232,31 @@ class ToolContact {
   /// Puts the tool to a place and a velocity, for methods that keep their own time: the next
   /// add_forces takes both as those of its instant.
   void place(double z, double velocity) {
-    z_ = z;
-    v_minus_ = v_plus_ = velocity;
+    now_ = {z, velocity, velocity};
   }
 
   [[nodiscard]] const ToolMotion& motion() const { return motion_; }
-  [[nodiscard]] double position() const { return z_; }
-  [[nodiscard]] double velocity() const { return v_plus_; }
+  [[nodiscard]] double position() const { return now_.z; }
+  [[nodiscard]] double velocity() const { return now_.v_plus; }
   [[nodiscard]] const ContactWork& work() const { return work_; }
   /// Kinetic energy of a free tool at t_n, as v_{n-1/2} v_{n+1/2} m/2; after advance.
-  [[nodiscard]] double kinetic_energy() const { return motion_.mass * v_minus_ * v_plus_ / 2; }
+  [[nodiscard]] double kinetic_energy() const { return motion_.mass * now_.v_minus * now_.v_plus / 2; }
   /// In all evaluations of the forces up to now.
   [[nodiscard]] const PackVisits& visits() const { return visits_; }
   /// Sum of the forces on the fabric at t_n [kN].
   [[nodiscard]] const Vec3<double>& force_on_fabric() const { return force_; }
 
  protected:
-  /// Velocity predicted for t_n, before `advance`, as that of the nodes, tag [D-2].
-  [[nodiscard]] double predicted_velocity() const { return 1.5 * v_plus_ - 0.5 * v_minus_; }
-  /// Tool velocity that goes with the node velocities a v_n + b v_{n+1/2} (book).
-  [[nodiscard]] double velocity(double a, double b) const {
-    return a * (v_minus_ + v_plus_) / 2 + b * v_plus_;
-  }
-  ToolMotion motion_;
-  ContactWork work_;
-  double z_ = 0, v_minus_ = 0, v_plus_ = 0, applied_ = 0;
-  bool moved_ = false;
-  Vec3<double> force_{};
-  double stored_ = 0;
-  PackVisits visits_;
+  struct Kinematics {
+    double z = 0;                    ///< position [mm]
+    double v_minus = 0, v_plus = 0;  ///< velocities of the last but one half step and the last
+    /// Velocity predicted for t_n, before `advance`, as that of the nodes, tag [D-2].
+    [[nodiscard]] double predicted_velocity() const { return 1.5 * v_plus - 0.5 * v_minus; }
+    /// Velocity that goes with the node velocities a v_n + b v_{n+1/2} (book), after `advance`.
+    [[nodiscard]] double velocity(double a, double b) const {
+      return a * (v_minus + v_plus) / 2 + b * v_plus;
+    }
+  };
   struct PartSums {
     Vec3<double> force{};
     double stored = 0;
@@ -257,7 +264,20 @@ class ToolContact {
     /// Powers of the forces booked last, and the forces along z.
     double friction_power = 0, friction_z = 0, damping_power = 0, damping_z = 0;
   };
-  std::vector<PartSums> parts_;
+  struct Flight {
+    Kinematics at, after;  ///< at t_n, and at t_{n+1}
+    std::vector<PartSums> parts;
+  };
+
+  ToolMotion motion_;
+  ContactWork work_;
+  Kinematics now_;
+  double applied_ = 0;
+  bool moved_ = false;
+  Vec3<double> force_{};
+  double stored_ = 0;
+  PackVisits visits_;
+  std::vector<Flight> flights_;
 };
 
 /// Contact with a tool of a given shape. T is the pack the sweep runs on.
@@ -287,8 +307,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
 
   using Base::add_forces;
 
-  void begin_forces(int parts) override {
-    Base::begin_forces(parts);
+  void begin_forces(int parts, int flight = 0) override {
+    Base::begin_forces(parts, flight);
     at_start_ = !started_;
     started_ = true;
   }
@@ -298,9 +318,10 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     Step step;
     step.slip_time = T(static_cast<R>(at_start_ ? 0.0 : dt));  // no slip has happened before t = 0
     step.half_over_dt = T(static_cast<R>(0.5 / dt));
-    step.z = Wide(this->z_);
-    step.velocity = T(static_cast<R>(this->v_plus_));
-    step.velocity_now = T(static_cast<R>(this->predicted_velocity()));
+    auto& flight = this->flights_[part.flight];
+    step.z = Wide(flight.at.z);
+    step.velocity = T(static_cast<R>(flight.at.v_plus));
+    step.velocity_now = T(static_cast<R>(flight.at.predicted_velocity()));
     Sums sums;
     PackVisits visits;
     const T zero(R(0));
@@ -324,7 +345,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       ++visits.general;
       touch<false>(state, n, travel, step, area, p, sums);
     }
-    auto& out = this->parts_[part.number];
+    auto& out = flight.parts[part.number];
     out.force = {static_cast<double>(lane_sum(sums.force.x)),
                  static_cast<double>(lane_sum(sums.force.y)),
                  static_cast<double>(lane_sum(sums.force.z))};
@@ -347,7 +368,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       damping = damping + dot(d, v);
       damping_z = damping_z + d.z;
     }
-    auto& out = this->parts_[part.number];
+    auto& out = this->flights_[part.flight].parts[part.number];
     out.friction_power = static_cast<double>(lane_sum(friction));
     out.friction_z = static_cast<double>(lane_sum(friction_z));
     out.damping_power = static_cast<double>(lane_sum(damping));
@@ -377,10 +398,10 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     using D = Dual<R, 6>;  // position and velocity of the node against the tool
     for (int n = 0; n < state.node_count; ++n) {
       Vec3<D> p, v;
-      const Vec3<R> x = seen(state.x.get(n), this->z_), rate = state.v.get(n);
+      const Vec3<R> x = seen(state.x.get(n), this->now_.z), rate = state.v.get(n);
       p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
       v = {D::variable(rate.x, 3), D::variable(rate.y, 4),
-           D::variable(rate.z - R(this->v_plus_), 5)};
+           D::variable(rate.z - R(this->now_.v_plus), 5)};
       const SurfaceGap<D> at = shape_.gap(p);
       if (!(at.gap < D(R(0)))) continue;
       const D k(R(parameters_.penalty) * state.area[n]), m(state.mass[n]);
@@ -402,7 +423,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
 
   void come_to_rest(const NodalState<R>& state) override {
     rest_ = state.x;
-    rest_z_ = this->z_;
+    rest_z_ = this->now_.z;
     if (parameters_.friction_model != Friction::elastic_stick)
       std::fill(stick_.x.begin(), stick_.x.end(), R(0));
   }
@@ -411,7 +432,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     using D = Dual<R, 3>;
     double sum = 0;
     for (int n = 0; n < state.node_count; ++n) {
-      const Vec3<R> x = seen(state.x.get(n), this->z_), x0 = seen(rest_.get(n), rest_z_);
+      const Vec3<R> x = seen(state.x.get(n), this->now_.z), x0 = seen(rest_.get(n), rest_z_);
       const Vec3<R> xi0 = stick_.get(n);
       const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
       const SurfaceGap<D> at = shape_.gap(p);

@@ -45,11 +45,8 @@ class CentralDifference {
     model_.state.v_predicted = model_.state.v;
     for (const auto& t : model_.tools) t->reset_culling();
     level_start_ = model_.arrange(least_level);
-    level_state_.assign(level_start_.size() - 1, {});
-    // As many bands whatever the number of threads: the order of all sums is then the same.
-    const int bands = std::clamp(levels() / least_band, 1, most_bands);
-    band_start_.clear();
-    for (int band = 0; band <= bands; ++band) band_start_.push_back(levels() * band / bands);
+    level_travel_.assign(level_start_.size() - 1, 0);
+    arrange_places();
     tool_travel_ = 0;
     is_constrained_.assign(static_cast<std::size_t>(model_.padded_count() / lanes), 0);
     for (int n = 0; n < model_.state.node_count; ++n) {
@@ -65,79 +62,33 @@ class CentralDifference {
   /// anything is not a number
   void step(EnergyLedger* sample = nullptr) {
     CROSSBEAM_EXPECTS(dt_ > 0);
-    for (const auto& b : model_.blocks) b->begin_step(model_.state);
-    for (const auto& t : model_.tools) t->begin_forces(levels());
-    // Energies are those of x_n: then no node moves before all forces are known.
-    const bool at_once = sample || steps_ == 0;
-    // The bands beside each other, each without the stage that it shares with the one before; then
-    // those stages, and the nodes that had to wait for them.
-    team_.run(bands(), [&](int band) {
-      const int first = band_start_[band], last = band_start_[band + 1];
-      if (band > 0) clear_forces(first);
-      for (int level = band > 0 ? first + 1 : 0; level < last; ++level) {
-        clear_forces(level);
-        add_internal_forces(level);
-        if (!at_once && level - 1 >= first + (band > 0 ? 1 : 0)) finish(level - 1);
-      }
-      if (!at_once && band + 1 == bands()) finish(last - 1);
-    });
-    team_.run(bands() - 1, [&](int seam) {
-      const int level = band_start_[seam + 1];
-      add_internal_forces(level);
-      if (at_once) return;
-      finish(level - 1);
-      finish(level);
-    });
-    double fastest = 0;
-    EnergyLedger ledger;
-    if (at_once) {
-      for (int level = 0; level < levels(); ++level) add_contact_forces(level);
-      for (const auto& t : model_.tools) t->end_forces();
-      if (steps_ == 0) begin();
-      if (sample) {
-        for (const auto& b : model_.blocks) b->add_energy(model_.state, ledger.internal);
-        for (const auto& t : model_.tools) ledger.contact += t->stored_energy();
-      }
-      for (int level = 0; level < levels(); ++level) move(level);
-    } else {
-      for (const auto& t : model_.tools) t->end_forces();
+    if (sample || steps_ == 0)
+      step_at_once(sample);
+    else
+      step_together(1);
+  }
+
+  /// As many calls of `step`, in every bit. Of a mesh of many levels several steps are in flight at a
+  /// time: each follows the one before a few levels behind, through the same cache, tag [S-6]. Where a
+  /// node moves too fast, those behind it have gone on when it is found.
+  void advance(long long steps) {
+    while (steps > 0) {
+      const int together = steps_ == 0 ? 1 : static_cast<int>(std::min<long long>(steps, in_flight()));
+      if (together > 1)
+        step_together(together);
+      else
+        step();
+      steps -= together;
     }
-    for (const LevelState& level : level_state_) {
-      fastest = faster(fastest, level.speed);
-      mass_damping_power_ += level.mass_damping_power;
-    }
-    advance_tools();
-    if (at_once) {
-      // First half of the step's work, the energies at t_n, then the second half. The first half of
-      // the first step would lie before the start.
-      if (steps_ > 0) book(2, -1, dt_ / 2);
-      if (sample) {
-        const Totals now = totals();
-        ledger.time = time_;
-        ledger.kinetic = now.kinetic;
-        ledger.friction = now.friction;
-        ledger.contact_damping = now.contact_damping;
-        ledger.mass_damping = mass_damping_work_;
-        ledger.external = now.external;
-        ledger.initial = initial_;
-        *sample = ledger;
-      }
-      book(0, 1, dt_ / 2);
-    } else {
-      for (const auto& t : model_.tools) t->book_tool(1, 0, dt_);
-      book_mass_damping(dt_);
-    }
-    ++steps_;
-    time_ = static_cast<double>(steps_) * dt_;
-    if (!(fastest <= speed_limit_))
-      throw RunError(when() + "node " + std::to_string(fastest_node()) + " moves at " +
-                     detail::to_text(fastest) + " mm/ms, above the limit of " +
-                     detail::to_text(speed_limit_) +
-                     " mm/ms. The run is unstable: use a smaller time step (critical step bound " +
-                     detail::to_text(critical_step()) + " ms, step " + detail::to_text(dt_) +
-                     " ms); or an element around the node has collapsed");
-    if (sample && !std::isfinite(sample->residual()))
-      throw RunError(when() + "an entry of the energy ledger is not a finite number");
+  }
+
+  /// Steps that `advance` has in flight at a time: one with several threads, with few levels, and where
+  /// a tool's motion depends on all of a step's forces.
+  [[nodiscard]] int in_flight() const {
+    if (threads() > 1 || levels() < least_levels_in_flight) return 1;
+    for (const auto& t : model_.tools)
+      if (t->motion().is_free()) return 1;
+    return most_in_flight;
   }
 
   /// Speeds above this stop the run [mm/ms]; for instance the yarns' wave speed.
@@ -149,7 +100,7 @@ class CentralDifference {
   void set_threads(int threads) { team_ = ThreadTeam(threads); }
   [[nodiscard]] int threads() const { return team_.threads(); }
   /// Levels of nodes and bands of levels that the step goes through; after `start`.
-  [[nodiscard]] int levels() const { return static_cast<int>(level_state_.size()); }
+  [[nodiscard]] int levels() const { return static_cast<int>(level_travel_.size()); }
   [[nodiscard]] int bands() const { return static_cast<int>(band_start_.size()) - 1; }
 
   [[nodiscard]] double time() const { return time_; }
@@ -172,43 +123,197 @@ class CentralDifference {
   /// Levels of a band at least: the seams between bands are the more work the narrower they are.
   static constexpr int least_band = 6, most_bands = 64;
 
-  struct LevelState {
-    double travel = 0;              ///< bound of how far any node has moved since the start [mm]
-    double speed = 0;               ///< largest of the last step; no number stays none [mm/ms]
-    double mass_damping_power = 0;  ///< of the last step [kN mm/ms]
+  /// Steps in flight: as many as keep a loop's inputs in a second-level cache of a megabyte or two.
+  static constexpr int most_in_flight = 4, least_levels_in_flight = 64;
+
+  /// One stage's part of a step: levels whose forces begin, the stage, and levels that have all their
+  /// forces then.
+  struct Place {
+    int clear_begin, clear_end, stage, finish_begin, finish_end;
   };
+
+  /// What a level leaves behind of a step.
+  struct LevelSums {
+    double speed = 0;               ///< largest [mm/ms]; no number stays none
+    double mass_damping_power = 0;  ///< [kN mm/ms]
+  };
+
+  /// Places of a step in their order: level after level, but the stage that two bands share, their
+  /// seam, after the one that follows it, so that every node sums its forces as with threads.
+  void arrange_places() {
+    // As many bands whatever the number of threads: the order of all sums is then the same.
+    const int bands = std::clamp(levels() / least_band, 1, most_bands);
+    band_start_.clear();
+    for (int band = 0; band <= bands; ++band) band_start_.push_back(levels() * band / bands);
+    places_.clear();
+    for (int band = 0; band < bands; ++band) {
+      const int first = band_start_[band], last = band_start_[band + 1];
+      for (int level = first; level < last; ++level) {
+        if (band == 0 || level > first + 1) {
+          const int finish_end = level + 1 == levels() ? level + 1 : level;
+          places_.push_back({level, level + 1, level, std::max(level - 1, 0), finish_end});
+        } else if (level > first) {
+          places_.push_back({first, level + 1, level, level, level});
+          places_.push_back({first, first, first, first - 1, first + 1});
+        }
+      }
+    }
+    // A step in flight may be where the one before, in its turn now, has finished all that it touches.
+    std::vector<int> finished(static_cast<std::size_t>(levels()));
+    const int count = static_cast<int>(places_.size());
+    for (int p = 0; p < count; ++p)
+      for (int l = places_[p].finish_begin; l < places_[p].finish_end; ++l) finished[l] = p;
+    lag_ = 1;
+    for (int p = 0; p < count; ++p)
+      for (int l = std::max(places_[p].stage - 1, 0);
+           l < std::max(places_[p].stage + 1, places_[p].clear_end); ++l)
+        lag_ = std::max(lag_, finished[l] - p);
+  }
 
   void clear_forces(int level) {
     const bool last = level + 1 == levels();
     model_.clear_forces(level_start_[level], last ? model_.padded_count() : level_start_[level + 1]);
   }
-  void add_internal_forces(int level) {
-    for (const auto& b : model_.blocks) b->add_stage(model_.state, dt_, level);
+  void add_internal_forces(const Place& place) {
+    for (int level = place.clear_begin; level < place.clear_end; ++level) clear_forces(level);
+    for (const auto& b : model_.blocks) b->add_stage(model_.state, dt_, place.stage);
   }
-  [[nodiscard]] typename ToolContact<R>::Part part(int level) const {
-    return {level_start_[level], level_start_[level + 1], level};
+  [[nodiscard]] typename ToolContact<R>::Part part(int level, int flight) const {
+    return {level_start_[level], level_start_[level + 1], level, flight};
   }
-  void add_contact_forces(int level) {
+  void add_contact_forces(int level, int flight) {
     for (const auto& t : model_.tools)
-      t->add_forces(model_.state, dt_, level_state_[level].travel + tool_travel_, part(level));
+      t->add_forces(model_.state, dt_, level_travel_[level] + flight_travel_[flight],
+                    part(level, flight));
   }
-  /// The rest of the step for nodes that have all their internal forces.
-  void finish(int level) {
-    add_contact_forces(level);
-    move(level);
-    for (const auto& t : model_.tools) t->book_nodes(model_.state, 1, 0, part(level));
-    if (model_.mass_damping > 0)
-      level_state_[level].mass_damping_power =
-          mass_damping_power(1, 0, level_start_[level], level_start_[level + 1]);
+  [[nodiscard]] LevelSums& sums(int level, int flight) { return sums_[flight * levels() + level]; }
+
+  /// A stage's part of a step, and the rest of the step for nodes that have all their forces then.
+  void pass(const Place& place, int flight) {
+    add_internal_forces(place);
+    for (int level = place.finish_begin; level < place.finish_end; ++level) {
+      add_contact_forces(level, flight);
+      move(level, flight);
+      for (const auto& t : model_.tools) t->book_nodes(model_.state, 1, 0, part(level, flight));
+      if (model_.mass_damping > 0)
+        sums(level, flight).mass_damping_power =
+            mass_damping_power(1, 0, level_start_[level], level_start_[level + 1]);
+    }
+  }
+
+  void begin_steps(int count) {
+    for (const auto& b : model_.blocks) b->begin_step(model_.state);
+    sums_.resize(static_cast<std::size_t>(count * levels()));
+    flight_travel_.resize(static_cast<std::size_t>(count));
+    for (int flight = 0; flight < count; ++flight) {
+      flight_travel_[flight] = tool_travel_;
+      for (const auto& t : model_.tools) t->begin_forces(levels(), flight);
+      if (count > 1) advance_tools(flight);
+    }
+  }
+
+  /// @param count 1, or up to `in_flight`
+  void step_together(int count) {
+    begin_steps(count);
+    if (count == 1) {
+      share([this](const Place& place) { pass(place, 0); });
+    } else {
+      const int places = static_cast<int>(places_.size());
+      for (int now = 0; now < places + lag_ * (count - 1); ++now)
+        for (int flight = 0, p = now; flight < count && p >= 0; ++flight, p -= lag_)
+          if (p < places) pass(places_[p], flight);
+    }
+    for (int flight = 0; flight < count; ++flight) {
+      for (const auto& t : model_.tools) t->end_forces(flight);
+      if (count == 1) advance_tools(flight);
+      const double fastest = collect(flight);
+      for (const auto& t : model_.tools) t->book_tool(1, 0, dt_, flight);
+      book_mass_damping(dt_);
+      end_step(fastest);
+    }
+  }
+
+  /// One thread goes through the places in their order. Several take the bands beside each other, each
+  /// without its seam, and then the seams.
+  template <class Task>
+  void share(const Task& task) {
+    if (threads() == 1) {
+      for (const Place& place : places_) task(place);
+      return;
+    }
+    const auto seam = [this](int band) { return band > 0 ? band_start_[band] + 1 : -1; };
+    team_.run(bands(), [&](int band) {
+      for (int p = band_start_[band]; p < band_start_[band + 1]; ++p)
+        if (p != seam(band)) task(places_[p]);
+    });
+    team_.run(bands() - 1, [&](int k) { task(places_[seam(k + 1)]); });
+  }
+
+  /// Energies are those of x_n: no node moves before all forces are known.
+  void step_at_once(EnergyLedger* sample) {
+    begin_steps(1);
+    share([this](const Place& place) { add_internal_forces(place); });
+    for (int level = 0; level < levels(); ++level) add_contact_forces(level, 0);
+    for (const auto& t : model_.tools) t->end_forces();
+    if (steps_ == 0) begin();
+    EnergyLedger ledger;
+    if (sample) {
+      for (const auto& b : model_.blocks) b->add_energy(model_.state, ledger.internal);
+      for (const auto& t : model_.tools) ledger.contact += t->stored_energy();
+    }
+    for (int level = 0; level < levels(); ++level) move(level, 0);
+    const double fastest = collect(0);
+    advance_tools(0);
+    // First half of the step's work, the energies at t_n, then the second half. The first half of
+    // the first step would lie before the start.
+    if (steps_ > 0) book(2, -1, dt_ / 2);
+    if (sample) {
+      const Totals now = totals();
+      ledger.time = time_;
+      ledger.kinetic = now.kinetic;
+      ledger.friction = now.friction;
+      ledger.contact_damping = now.contact_damping;
+      ledger.mass_damping = mass_damping_work_;
+      ledger.external = now.external;
+      ledger.initial = initial_;
+      *sample = ledger;
+    }
+    book(0, 1, dt_ / 2);
+    end_step(fastest);
+    if (sample && !std::isfinite(sample->residual()))
+      throw RunError(when() + "an entry of the energy ledger is not a finite number");
+  }
+
+  /// @return the largest speed of any node
+  double collect(int flight) {
+    double fastest = 0;
+    for (int level = 0; level < levels(); ++level) {
+      fastest = faster(fastest, sums(level, flight).speed);
+      mass_damping_power_ += sums(level, flight).mass_damping_power;
+    }
+    return fastest;
+  }
+
+  void end_step(double fastest) {
+    ++steps_;
+    time_ = static_cast<double>(steps_) * dt_;
+    if (fastest <= speed_limit_) return;
+    throw RunError(when() + "node " + std::to_string(fastest_node()) + " moves at " +
+                   detail::to_text(fastest) + " mm/ms, above the limit of " +
+                   detail::to_text(speed_limit_) +
+                   " mm/ms. The run is unstable: use a smaller time step (critical step bound " +
+                   detail::to_text(critical_step()) + " ms, step " + detail::to_text(dt_) +
+                   " ms); or an element around the node has collapsed");
   }
 
   /// The larger one; what is no number stays.
   static double faster(double a, double b) { return a >= b ? a : (b >= a ? b : a + b); }
 
-  void advance_tools() {
+  void advance_tools(int flight) {
+    const double time = static_cast<double>(steps_ + flight) * dt_;
     double furthest = 0;
     for (std::size_t k = 0; k < model_.tools.size(); ++k) {
-      const double moved = model_.tools[k]->advance(time_, dt_);
+      const double moved = model_.tools[k]->advance(time, dt_, flight);
       if (!std::isfinite(moved))
         throw RunError(when() + "tool " + std::to_string(k) + " is at z = " +
                        detail::to_text(model_.tools[k]->position()) +
@@ -264,7 +369,7 @@ class CentralDifference {
   }
 
   /// v_{n+1/2} and x_{n+1} of a level, tag [D-1].
-  void move(int level) {
+  void move(int level, int flight) {
     const double a = model_.mass_damping * dt_ / 2;
     const T keep(static_cast<R>((1 - a) / (1 + a))), push(static_cast<R>(dt_ / (1 + a)));
     const T half(R(0.5)), three_halves(R(1.5));
@@ -289,10 +394,10 @@ class CentralDifference {
       sum = sum + speed_squared;  // a NaN or an overflow stays in the sum
     }
     const double total = static_cast<double>(lane_sum(sum));
-    LevelState& out = level_state_[level];
-    out.speed = std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
-    out.travel += out.speed * dt_;
-    out.mass_damping_power = 0;
+    const double speed =
+        std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
+    sums(level, flight) = {speed, 0};
+    level_travel_[level] += speed * dt_;
   }
 
   /// Work of the step's forces with the velocities a v_n + b v_{n+1/2} over a time, tag [D-4].
@@ -343,8 +448,12 @@ class CentralDifference {
   Model<R> model_;
   std::vector<int> level_start_;
   std::vector<char> is_constrained_;  // packs with a node that is held
-  std::vector<LevelState> level_state_;
-  std::vector<int> band_start_;  // first level of every band, and the level count
+  std::vector<double> level_travel_;  // bound of how far any node has moved since the start [mm]
+  std::vector<int> band_start_;       // first level and place of every band, and the level count
+  std::vector<Place> places_;
+  int lag_ = 1;  // places between a step in flight and the next
+  std::vector<LevelSums> sums_;        // of flight 0, level after level; of flight 1, ...
+  std::vector<double> flight_travel_;  // of all tools before the step
   ThreadTeam team_;
   double dt_ = 0, time_ = 0, tool_travel_ = 0, speed_limit_ = 1e6;
   double mass_damping_work_ = 0, mass_damping_power_ = 0, initial_ = 0;

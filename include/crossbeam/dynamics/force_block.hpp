@@ -49,6 +49,7 @@ class ForceBlock {
   /// Sorts the work: what touches level s and none above is stage s.
   /// @param level_start first node of every level and the end; levels are wider than the bandwidth
   virtual void arrange(const std::vector<int>& /*level_start*/) {}
+  /// Before the stages of a step, or of several that are in flight together, tag [S-6].
   virtual void begin_step(const NodalState<R>&) {}
   /// Stages that are two or more apart may run at the same time, tag [S-5].
   virtual void add_stage(NodalState<R>& state, double dt, int stage) {
