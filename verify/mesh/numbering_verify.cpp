@@ -9,6 +9,7 @@
 #include <functional>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -158,12 +159,12 @@ int bandwidth(const Mesh<Corners>& m) {
   return most;
 }
 
-/// Share of the batches of eight lanes that load whole packs.
-double contiguous(const Mesh<4>& m) {
+/// Batches of eight lanes that do not load whole packs, and all.
+std::pair<int, int> gathered(const Mesh<4>& m) {
   const IndexBatches<4, Pack<double, 8>> batches(m.elements);
   int count = 0;
-  for (int b = 0; b < batches.size(); ++b) count += batches[b].gather_row < 0;
-  return double(count) / batches.size();
+  for (int b = 0; b < batches.size(); ++b) count += batches[b].gather_row >= 0;
+  return {count, batches.size()};
 }
 
 template <class Check>
@@ -257,10 +258,11 @@ TEST_CASE(
     }
   excess.claim("V-MESH-03", 0, "bandwidth of shuffled rectangles beyond that of their short rows");
   const Mesh<4> strip = mesh_in_disorder<4>(grid(40, 60, 3, 0.2, random), cells<4>(40, 60), random);
-  REQUIRE(contiguous(strip) < 0.01);
-  // Rows of 40 elements are five batches of eight.
-  verify::claim("V-MESH-03", contiguous(renumbered(strip, number_by_levels(strip))), 1,
-                "share of contiguous batches in a shuffled strip, numbered", verify::Bound::lower);
+  const auto [mixed, all] = gathered(strip);
+  REQUIRE(mixed > 0.99 * all);
+  // 60 rows of 40 elements with a lane left out between two: 2459 lanes, the last three by themselves.
+  verify::claim("V-MESH-03", gathered(renumbered(strip, number_by_levels(strip))).first, 1,
+                "gathered batches of a shuffled strip, numbered: the rest at its end");
 }
 
 namespace {

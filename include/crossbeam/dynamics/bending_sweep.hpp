@@ -235,7 +235,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       constants_ = LaneArray<T>(batches_.size(), Columns);
       stiffness_ = LaneArray<T>(batches_.size(), 1);
       for (int b = 0; b < batches_.size(); ++b)
-        for (int l = 0; l < batches_[b].active; ++l) {  // idle lanes keep a stiffness of zero
+        for (int l = 0; l < lanes; ++l) {
+          if (!batches_[b].holds(l)) continue;  // idle lanes keep a stiffness of zero
           const Stencil& s = stencils[batches_.tuple(b, l)];
           for (int k = 0; k < used_; ++k) constants_.at(b, k, l) = R(s.weight[k]);
           stiffness_.at(b, 0, l) = R(s.stiffness);
@@ -247,7 +248,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
               largest = std::max(largest, std::abs(constants_.at(0, k, 0)));
             return largest;
           },
-          [this](int b) { return batches_[b].active; });
+          [this](int b, int lane) { return batches_[b].holds(lane); });
       for (int b = 0; b < batches_.size(); ++b)
         has_gathered_ = has_gathered_ || batches_[b].gather_row >= 0;
       for (int k = 0; k < used_ && batches_.size() > 0; ++k) {
@@ -288,8 +289,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
 
     void add_tangent(TangentEntries& tangent) const {
       for (int b = 0; b < batches_.size(); ++b)
-        for (int l = 0; l < batches_[b].active; ++l)
-          for (int i = 0; i < used_; ++i)
+        for (int l = 0; l < lanes; ++l)
+          for (int i = 0; i < used_ && batches_[b].holds(l); ++i)
             for (int j = 0; j < used_; ++j) {
               const double k = static_cast<double>(stiffness_.load(b, 0)[l]) *
                                static_cast<double>(constants_.load(b, i)[l]) *
@@ -374,7 +375,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
               for (int k = 0; k < used_; ++k)
                 forces.put(k, i + part, Narrow::load(w + k * lanes) * signed_copy<Mirrored>(m, k));
           }
-        if (end > run.tuples)
+        if (end > run.length)
           forces.rest(Vectors == 1 ? 1 : used_, end - lanes,
                       batches_.active(batches_[run.first_batch + run.batches - 1]));
         if constexpr (Vectors == 1)

@@ -185,8 +185,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
                                       law_.reference().cosine);
         const T gamma = shear_angle(cosine, law_.reference());
         const auto tension = law_.yarn_tension(at);
-        for (int l = 0; l < batch.active; ++l) {
-          ElementSample& s = out[offset + static_cast<std::size_t>(batch.first_tuple + l)];
+        for (int l = 0; l < lanes; ++l) {
+          if (!batch.holds(l)) continue;
+          ElementSample& s = out[offset + static_cast<std::size_t>(batches_.tuple(b, l))];
           s.shear_angle += share * static_cast<double>(gamma[l]);
           const double lambda[2] = {static_cast<double>(at.fibres.lambda1[l]),
                                     static_cast<double>(at.fibres.lambda2[l])};
@@ -263,7 +264,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         const FibreStress<T> m = law_.stress(at);
         const StrainHessian<T> h = law_.hessian(at);
         const T mu = viscosity_coefficient(b, p);
-        for (int l = 0; l < batch.active; ++l) {
+        for (int l = 0; l < lanes; ++l) {
           const auto real = [l](const T& x) { return static_cast<double>(x[l]); };
           MembranePointTangent<M>& out = at_point[p][l];
           for (int k = 0; k < M; ++k) {
@@ -281,7 +282,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
                          real(h.h12), real(h.h13), real(h.h23)};
         }
       }
-      for (int l = 0; l < batch.active; ++l) {
+      for (int l = 0; l < lanes; ++l) {
+        if (!batch.holds(l)) continue;
         element.clear();
         for (int p = 0; p < Element::points; ++p) element.add(at_point[p][l]);
         if constexpr (Element::has_hourglass)
@@ -341,8 +343,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         strains<true>(batches_.template view<Wide>(state.x, run, work.positions), run, p, work);
       else
         strains<false>({}, run, p, work);
-      if (run.tuples < end)
-        work.rest(end - lanes, batches_.active(batches_[run.first_batch + run.batches - 1]));
+      for (int k = 0; k < run.batches; ++k)
+        if (const Batch& batch = batches_[run.first_batch + k]; !batch.is_full())
+          work.rest(k * lanes, batches_.active(batch));
       stresses(law, run, p, work, sums);
       if constexpr (Viscous)
         viscous_stresses(batches_.template view<T>(state.v_predicted, run, work.velocities), run, p, work,
@@ -561,7 +564,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   CROSSBEAM_INLINE FibreStrain<T> strain(const PointKinematics<T, M, K>& kinematics,
                                          const Batch& batch) const {
     FibreStrain<T> b = kinematics.strain(law_.reference().cosine);
-    if (batch.active < lanes) {
+    if (!batch.is_full()) {
       const auto active = batches_.active(batch);
       const T zero(R(0));
       b = {select(active, b.b11, zero), select(active, b.b22, zero), select(active, b.b12, zero)};
@@ -615,7 +618,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
             largest = R(1);
           return largest;
         },
-        [this](int b) { return batches_[b].active; });
+        [this](int b, int lane) { return batches_[b].holds(lane); });
   }
 
   void fill_constants(const Mesh<corners>& mesh, int b, int lane, double impedance) {

@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -22,19 +24,29 @@ class IndexBatches {
  public:
   static constexpr int lanes = lanes_v<T>;
   using R = real_t<T>;
+  static_assert(lanes <= 32);
+  static constexpr std::uint32_t all_lanes = ~std::uint32_t(0) >> (32 - lanes);
 
+  /// Tuples in the order of their lanes. A contiguous batch has lanes without one where the nodes of
+  /// consecutive tuples leave some out, as from one row of a mesh to the next.
   struct Batch {
     std::array<int, Columns> first;  ///< node of lane 0 in each column, when contiguous
     int gather_row = -1;             ///< row of the lane table, or -1 when contiguous
-    int active = lanes;              ///< lanes that hold a tuple
+    std::uint32_t held = 0;          ///< bit l: lane l holds a tuple
+    int mask_row = 0;                ///< row of the table of masks
     int first_tuple = 0;
+
+    [[nodiscard]] bool holds(int lane) const { return (held >> lane & 1u) != 0; }
+    [[nodiscard]] bool is_full() const { return held == all_lanes; }
+    /// Lanes up to the last that holds a tuple.
+    [[nodiscard]] int length() const { return std::bit_width(held); }
   };
 
   /// Batches of the same stage that follow each other: contiguous ones without a gap, or gathered
   /// ones.
   struct Run {
     int first_batch = 0, batches = 0;
-    int tuples = 0;
+    int length = 0;  ///< places from lane 0 of the first batch to the last tuple
     bool contiguous = false;
     /// Columns in the order of their nodes. Those less than `reach` nodes apart share a line, so
     /// that a node meets all their forces at once.
@@ -43,32 +55,39 @@ class IndexBatches {
     int lines = 0;
   };
   static constexpr int reach = 8;
-  /// Tuples of a run, at most.
+  /// Places of a run, at most.
   static constexpr int run_capacity =
       std::max(lanes, 256 / Columns / lanes * lanes);
 
   IndexBatches() = default;
   explicit IndexBatches(const std::vector<std::array<int, Columns>>& tuples) {
     const int count = static_cast<int>(tuples.size());
+    masks_.assign(lanes, R(1));
     for (int begin = 0; begin < count;) {
-      int run = 1;
-      while (run < lanes && begin + run < count && follows(tuples[begin + run - 1],
-                                                           tuples[begin + run]))
-        ++run;
+      // Where the batch before ends or, if that leaves it too empty, at the next tuple.
       Batch batch;
-      batch.first = tuples[begin];
-      batch.first_tuple = begin;
-      // A short run is worth its own contiguous batch from half the lanes on.
-      if (2 * run >= lanes) {
-        batch.active = run;
-      } else {
-        batch.active = std::min(lanes, count - begin);
+      bool found = false;
+      if (!batches_.empty() && batches_.back().gather_row < 0) {
+        for (int c = 0; c < Columns; ++c) batch.first[c] = batches_.back().first[c] + lanes;
+        found = fill(batch, tuples, begin);
+      }
+      if (!found) {
+        batch.first = tuples[begin];
+        found = fill(batch, tuples, begin);
+      }
+      if (!found) {
+        const int some = std::min(lanes, count - begin);
+        batch.held = all_lanes >> (lanes - some);
         batch.gather_row = static_cast<int>(table_.size()) / (Columns * lanes);
         for (int c = 0; c < Columns; ++c)
-          for (int l = 0; l < lanes; ++l)
-            table_.push_back(tuples[begin + std::min(l, batch.active - 1)][c]);
+          for (int l = 0; l < lanes; ++l) table_.push_back(tuples[begin + std::min(l, some - 1)][c]);
       }
-      begin += batch.active;
+      batch.first_tuple = begin;
+      if (!batch.is_full()) {
+        batch.mask_row = static_cast<int>(masks_.size()) / lanes;
+        for (int l = 0; l < lanes; ++l) masks_.push_back(batch.holds(l) ? R(1) : R(0));
+      }
+      begin += std::popcount(batch.held);
       batches_.push_back(batch);
     }
     arrange({});
@@ -78,9 +97,10 @@ class IndexBatches {
   [[nodiscard]] int bandwidth() const {
     int widest = 0;
     for (int b = 0; b < size(); ++b) {
-      int low = node(b, 0, 0), high = low;
+      int low = std::numeric_limits<int>::max(), high = 0;
       for (int c = 0; c < Columns; ++c)
-        for (int lane = 0; lane < batches_[b].active; ++lane) {
+        for (int lane = 0; lane < lanes; ++lane) {
+          if (!batches_[b].holds(lane)) continue;
           low = std::min(low, node(b, c, lane));
           high = std::max(high, node(b, c, lane));
         }
@@ -103,8 +123,8 @@ class IndexBatches {
     const auto stage = [&](int b) {
       int highest = 0;
       for (int c = 0; c < Columns; ++c)
-        for (int lane = 0; lane < batches_[b].active; ++lane)
-          highest = std::max(highest, level(node(b, c, lane)));
+        for (int lane = 0; lane < lanes; ++lane)
+          if (batches_[b].holds(lane)) highest = std::max(highest, level(node(b, c, lane)));
       return highest;
     };
     std::vector<std::vector<int>> members(static_cast<std::size_t>(levels));
@@ -115,8 +135,8 @@ class IndexBatches {
       for (std::size_t k = 0; k < batches.size(); ++k) {
         const int b = batches[k];
         if (k == 0 || b != batches[k - 1] + 1 || !continues(b)) runs_.push_back(new_run(b));
+        runs_.back().length = runs_.back().batches * lanes + batches_[b].length();
         ++runs_.back().batches;
-        runs_.back().tuples += batches_[b].active;
       }
       stage_runs_.push_back(static_cast<int>(runs_.size()));
     }
@@ -130,12 +150,13 @@ class IndexBatches {
   [[nodiscard]] int size() const { return static_cast<int>(batches_.size()); }
   [[nodiscard]] const Batch& operator[](int b) const { return batches_[b]; }
 
-  /// Tuple in a lane; idle lanes repeat the last tuple.
+  /// Tuple in a lane; idle lanes repeat one of their batch.
   [[nodiscard]] int tuple(int b, int lane) const {
-    return batches_[b].first_tuple + std::min(lane, batches_[b].active - 1);
+    const std::uint32_t up_to_lane = ~std::uint32_t(0) >> (31 - lane);
+    return batches_[b].first_tuple + std::max(std::popcount(batches_[b].held & up_to_lane) - 1, 0);
   }
 
-  /// Node of a column in an active lane.
+  /// Node of a column in a lane that holds a tuple.
   [[nodiscard]] int node(int b, int column, int lane) const {
     const Batch& batch = batches_[b];
     return batch.gather_row < 0 ? batch.first[column] + lane : row(batch, column)[lane];
@@ -143,9 +164,7 @@ class IndexBatches {
 
   /// Lanes that hold a tuple.
   [[nodiscard]] CROSSBEAM_INLINE auto active(const Batch& batch) const {
-    R number[lanes];
-    for (int l = 0; l < lanes; ++l) number[l] = R(l);
-    return T::load(number) < T(R(batch.active));
+    return T::load(masks_.data() + static_cast<std::ptrdiff_t>(batch.mask_row) * lanes) > T(R(0));
   }
 
   /// @tparam U pack of the array's precision
@@ -223,17 +242,26 @@ class IndexBatches {
         const int* n = row(batch, k);
         for (int c = 0; c < 3; ++c) {
           const R* f = from(k, c) + i * lanes;
-          for (int l = 0; l < batch.active; ++l) out[c][n[l]] -= f[l];
+          for (int l = 0; l < batch.length(); ++l) out[c][n[l]] -= f[l];
         }
       }
     }
   }
 
  private:
-  static bool follows(const std::array<int, Columns>& a, const std::array<int, Columns>& b) {
-    for (int c = 0; c < Columns; ++c)
-      if (b[c] != a[c] + 1) return false;
-    return true;
+  /// Puts tuples, from `begin` on, into lanes of a contiguous batch whose first nodes are given.
+  /// @return whether it is worth it: from half the lanes on
+  static bool fill(Batch& batch, const std::vector<std::array<int, Columns>>& tuples, int begin) {
+    batch.held = 0;
+    for (std::size_t k = static_cast<std::size_t>(begin); k < tuples.size(); ++k) {
+      const int lane = tuples[k][0] - batch.first[0];
+      if (lane < batch.length() || lane >= lanes) break;
+      bool fits = true;
+      for (int c = 1; c < Columns; ++c) fits = fits && tuples[k][c] - batch.first[c] == lane;
+      if (!fits) break;
+      batch.held |= std::uint32_t(1) << lane;
+    }
+    return 2 * std::popcount(batch.held) >= lanes;
   }
   [[nodiscard]] const int* row(const Batch& batch, int column) const {
     return table_.data() + (static_cast<std::size_t>(batch.gather_row) * Columns + column) * lanes;
@@ -246,7 +274,6 @@ class IndexBatches {
     if ((run.batches + 1) * lanes > run_capacity || run.contiguous != (batch.gather_row < 0))
       return false;
     if (!run.contiguous) return true;
-    if (last.active < lanes) return false;
     for (int c = 0; c < Columns; ++c)
       if (batch.first[c] != last.first[c] + lanes) return false;
     return true;
@@ -275,6 +302,7 @@ class IndexBatches {
 
   std::vector<Batch> batches_;
   std::vector<int> table_;
+  AlignedArray<R> masks_;  // one row of ones; the rows of batches that are not full
   std::vector<Run> runs_;
   std::vector<int> stage_runs_;  // first run of every stage, and their count
 };
@@ -349,7 +377,7 @@ class RunVectors {
       R* const out[3] = {a.x.data(), a.y.data(), a.z.data()};
       const Line to{{out[0] + first[run.column[k]], out[1] + first[run.column[k]],
                      out[2] + first[run.column[k]]},
-                    run.tuples + run.shift[run.line_end[line] - 1]};
+                    run.length + run.shift[run.line_end[line] - 1]};
       switch (run.line_end[line] - k) {
         case 1: line_of<Weighted, 1>(to, run, k, 1, weight); break;
         case 2: line_of<Weighted, 2>(to, run, k, 2, weight); break;
@@ -422,15 +450,15 @@ class LaneArray {
   /// Keeps one tuple's constants where all agree but for the rounding of the mesh's coordinates:
   /// a regular mesh then streams no constants, tag [S-2].
   /// @param scale size that a component's differences are compared with
-  /// @param active lanes of each batch that count
-  template <class Scale, class Active>
-  void collapse_if_uniform(const Scale& scale, const Active& active) {
+  /// @param counts whether a lane of a batch does
+  template <class Scale, class Counts>
+  void collapse_if_uniform(const Scale& scale, const Counts& counts) {
     if (batches_ == 0) return;
     const R tolerance = std::max(R(1e-11), 2 * std::numeric_limits<R>::epsilon());
     for (int b = 0; b < batches_; ++b)
       for (int c = 0; c < components_; ++c)
-        for (int l = 0; l < active(b); ++l)
-          if (!(std::abs(at(b, c, l) - at(0, c, 0)) <= tolerance * scale(c))) return;
+        for (int l = 0; l < lanes_v<T>; ++l)
+          if (counts(b, l) && !(std::abs(at(b, c, l) - at(0, c, 0)) <= tolerance * scale(c))) return;
     for (int c = 0; c < components_; ++c)
       for (int l = 0; l < lanes_v<T>; ++l) at(0, c, l) = at(0, c, 0);
     data_.resize(stride_);
