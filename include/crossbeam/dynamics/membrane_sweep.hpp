@@ -434,6 +434,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   CROSSBEAM_INLINE void collect_forces(const Run& run, int p, Work& work) const {
     const int end = run.batches * lanes;
     const bool has_hourglass = Element::has_hourglass && hourglass_ > R(0);
+    const T zero(R(0));
+    const Vec3<T> none{zero, zero, zero};
     Constants c = constants(run, p);
     for (int i = 0; i < end; i += lanes, c.next()) {
       const PointKinematics<T, M, K> kinematics(work.f1.load(i), work.f2.load(i));
@@ -459,9 +461,10 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
             force[1] = force[1] - c.load(hourglass_at + 1) * q;
           }
         } else {
-          const T zero(R(0));
-          force[2] = {zero, zero, zero};
+          force[2] = none;
         }
+      } else {
+        for (int k = M; k < K; ++k) force[k] = none;
       }
       Vec3<T> corner[corners];
       Element::corner_forces(force, corner);
