@@ -55,8 +55,8 @@ void double_dome(benchmark::State& state, double element_size, double speed,
     }
   const auto double_ = drape::Precision::double_;
   // Long enough to be measured once.
-  benchmark::RegisterBenchmark("step/double_dome/2.5_mm/pack_double", double_dome, 2.5, 1.0, double_,
-                               Skipping::all, 1.0)
+  benchmark::RegisterBenchmark("step/double_dome/2.5_mm/axial_scaling_25/pack_double", double_dome, 2.5,
+                               1.0, double_, Skipping::all, 25.0)
       ->Unit(benchmark::kMillisecond)
       ->Repetitions(1);
   benchmark::RegisterBenchmark("step/double_dome/10_mm/no_culling/pack_double", double_dome, 10.0,
