@@ -47,4 +47,5 @@
 #include "crossbeam/dynamics/membrane_sweep.hpp"
 #include "crossbeam/dynamics/model.hpp"
 #include "crossbeam/dynamics/statics.hpp"
+#include "crossbeam/dynamics/step_order.hpp"
 #include "crossbeam/dynamics/thread_team.hpp"

@@ -6,7 +6,7 @@
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/ledger.hpp"
 #include "crossbeam/dynamics/model.hpp"
-#include "crossbeam/dynamics/thread_team.hpp"
+#include "crossbeam/dynamics/step_order.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ class CentralDifference {
     for (const auto& t : model_.tools) t->reset_culling();
     level_start_ = model_.arrange(least_level);
     level_travel_.assign(level_start_.size() - 1, 0);
-    arrange_places();
+    order_ = StepOrder(static_cast<int>(level_travel_.size()));
     tool_travel_ = 0;
     is_constrained_.assign(static_cast<std::size_t>(model_.padded_count() / lanes), 0);
     for (int n = 0; n < model_.state.node_count; ++n) {
@@ -100,8 +100,8 @@ class CentralDifference {
   void set_threads(int threads) { team_ = ThreadTeam(threads); }
   [[nodiscard]] int threads() const { return team_.threads(); }
   /// Levels of nodes and bands of levels that the step goes through; after `start`.
-  [[nodiscard]] int levels() const { return static_cast<int>(level_travel_.size()); }
-  [[nodiscard]] int bands() const { return static_cast<int>(band_start_.size()) - 1; }
+  [[nodiscard]] int levels() const { return order_.levels(); }
+  [[nodiscard]] int bands() const { return order_.bands(); }
 
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double time_step() const { return dt_; }
@@ -120,17 +120,8 @@ class CentralDifference {
  private:
   static constexpr int least_level = 256;
 
-  /// Levels of a band at least: the seams between bands are the more work the narrower they are.
-  static constexpr int least_band = 6, most_bands = 64;
-
   /// Steps in flight: as many as keep a loop's inputs in a second-level cache of a megabyte or two.
   static constexpr int most_in_flight = 4, least_levels_in_flight = 64;
-
-  /// One stage's part of a step: levels whose forces begin, the stage, and levels that have all their
-  /// forces then.
-  struct Place {
-    int clear_begin, clear_end, stage, finish_begin, finish_end;
-  };
 
   /// What a level leaves behind of a step.
   struct LevelSums {
@@ -138,43 +129,11 @@ class CentralDifference {
     double mass_damping_power = 0;  ///< [kN mm/ms]
   };
 
-  /// Places of a step in their order: level after level, but the stage that two bands share, their
-  /// seam, after the one that follows it, so that every node sums its forces as with threads.
-  void arrange_places() {
-    // As many bands whatever the number of threads: the order of all sums is then the same.
-    const int bands = std::clamp(levels() / least_band, 1, most_bands);
-    band_start_.clear();
-    for (int band = 0; band <= bands; ++band) band_start_.push_back(levels() * band / bands);
-    places_.clear();
-    for (int band = 0; band < bands; ++band) {
-      const int first = band_start_[band], last = band_start_[band + 1];
-      for (int level = first; level < last; ++level) {
-        if (band == 0 || level > first + 1) {
-          const int finish_end = level + 1 == levels() ? level + 1 : level;
-          places_.push_back({level, level + 1, level, std::max(level - 1, 0), finish_end});
-        } else if (level > first) {
-          places_.push_back({first, level + 1, level, level, level});
-          places_.push_back({first, first, first, first - 1, first + 1});
-        }
-      }
-    }
-    // A step in flight may be where the one before, in its turn now, has finished all that it touches.
-    std::vector<int> finished(static_cast<std::size_t>(levels()));
-    const int count = static_cast<int>(places_.size());
-    for (int p = 0; p < count; ++p)
-      for (int l = places_[p].finish_begin; l < places_[p].finish_end; ++l) finished[l] = p;
-    lag_ = 1;
-    for (int p = 0; p < count; ++p)
-      for (int l = std::max(places_[p].stage - 1, 0);
-           l < std::max(places_[p].stage + 1, places_[p].clear_end); ++l)
-        lag_ = std::max(lag_, finished[l] - p);
-  }
-
   void clear_forces(int level) {
     const bool last = level + 1 == levels();
     model_.clear_forces(level_start_[level], last ? model_.padded_count() : level_start_[level + 1]);
   }
-  void add_internal_forces(const Place& place) {
+  void add_internal_forces(const StepOrder::Place& place) {
     for (int level = place.clear_begin; level < place.clear_end; ++level) clear_forces(level);
     for (const auto& b : model_.blocks) b->add_stage(model_.state, dt_, place.stage);
   }
@@ -189,7 +148,7 @@ class CentralDifference {
   [[nodiscard]] LevelSums& sums(int level, int flight) { return sums_[flight * levels() + level]; }
 
   /// A stage's part of a step, and the rest of the step for nodes that have all their forces then.
-  void pass(const Place& place, int flight) {
+  void pass(const StepOrder::Place& place, int flight) {
     add_internal_forces(place);
     for (int level = place.finish_begin; level < place.finish_end; ++level) {
       add_contact_forces(level, flight);
@@ -215,14 +174,11 @@ class CentralDifference {
   /// @param count 1, or up to `in_flight`
   void step_together(int count) {
     begin_steps(count);
-    if (count == 1) {
-      share([this](const Place& place) { pass(place, 0); });
-    } else {
-      const int places = static_cast<int>(places_.size());
-      for (int now = 0; now < places + lag_ * (count - 1); ++now)
-        for (int flight = 0, p = now; flight < count && p >= 0; ++flight, p -= lag_)
-          if (p < places) pass(places_[p], flight);
-    }
+    const auto task = [this](const StepOrder::Place& place, int flight = 0) { pass(place, flight); };
+    if (count == 1)
+      order_.share(team_, task);
+    else
+      order_.follow(count, task);
     for (int flight = 0; flight < count; ++flight) {
       for (const auto& t : model_.tools) t->end_forces(flight);
       if (count == 1) advance_tools(flight);
@@ -233,26 +189,10 @@ class CentralDifference {
     }
   }
 
-  /// One thread goes through the places in their order. Several take the bands beside each other, each
-  /// without its seam, and then the seams.
-  template <class Task>
-  void share(const Task& task) {
-    if (threads() == 1) {
-      for (const Place& place : places_) task(place);
-      return;
-    }
-    const auto seam = [this](int band) { return band > 0 ? band_start_[band] + 1 : -1; };
-    team_.run(bands(), [&](int band) {
-      for (int p = band_start_[band]; p < band_start_[band + 1]; ++p)
-        if (p != seam(band)) task(places_[p]);
-    });
-    team_.run(bands() - 1, [&](int k) { task(places_[seam(k + 1)]); });
-  }
-
   /// Energies are those of x_n: no node moves before all forces are known.
   void step_at_once(EnergyLedger* sample) {
     begin_steps(1);
-    share([this](const Place& place) { add_internal_forces(place); });
+    order_.share(team_, [this](const StepOrder::Place& place) { add_internal_forces(place); });
     for (int level = 0; level < levels(); ++level) add_contact_forces(level, 0);
     for (const auto& t : model_.tools) t->end_forces();
     if (steps_ == 0) begin();
@@ -447,11 +387,9 @@ class CentralDifference {
 
   Model<R> model_;
   std::vector<int> level_start_;
-  std::vector<char> is_constrained_;  // packs with a node that is held
-  std::vector<double> level_travel_;  // bound of how far any node has moved since the start [mm]
-  std::vector<int> band_start_;       // first level and place of every band, and the level count
-  std::vector<Place> places_;
-  int lag_ = 1;  // places between a step in flight and the next
+  std::vector<char> is_constrained_;   // packs with a node that is held
+  std::vector<double> level_travel_;   // bound of how far any node has moved since the start [mm]
+  StepOrder order_;
   std::vector<LevelSums> sums_;        // of flight 0, level after level; of flight 1, ...
   std::vector<double> flight_travel_;  // of all tools before the step
   ThreadTeam team_;
