@@ -100,6 +100,8 @@ RATIOS = [
      "step/double_dome/5_mm/pack_double", "step/double_dome/5_mm/pack_float"),
 ]
 
+NUMBERS = ["double", "pack_double", "pack_float"]
+
 CONTEXT = ["date", "num_cpus", "mhz_per_cpu", "load_avg", "compiler", "flags", "commit",
            "pack_lanes_double", "pack_lanes_float"]
 
@@ -130,6 +132,28 @@ def read(files):
     return context, dict(sorted(results.items()))
 
 
+def rounded(ns):
+    return f"{ns:.0f}" if ns >= 100 else f"{ns:#.3g}"
+
+
+def print_times(results):
+    """One table per first part of the names; a row has what the next parts say, a column each number
+    type."""
+    tables = {}
+    for name, entry in results.items():
+        if name.endswith("/real_time"):  # of several threads: what they cost is no time per item
+            continue
+        program, *what, number = name.split("/")
+        title = ", ".join(part.replace("_", " ") for part in what)
+        tables.setdefault(program, {}).setdefault(title, {})[number] = entry["ns"]
+    for program, rows in tables.items():
+        print(f"\n### {program.replace('_', ' ').capitalize()}\n")
+        print("| | scalar | pack, double | pack, float |\n| --- | ---: | ---: | ---: |")
+        for title, times in rows.items():
+            cells = [rounded(times[number]) if number in times else "-" for number in NUMBERS]
+            print(f"| {title} | {' | '.join(cells)} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description="Record of a benchmark run, and its ratios.")
     parser.add_argument("files", nargs="+", help="JSON files written by ./run bench")
@@ -144,9 +168,7 @@ def main():
     for title, above, below in RATIOS:
         if above in results and below in results:
             print(f"| {title} | {results[above]['ns'] / results[below]['ns']:.2f} |")
-    print("\n| Benchmark | ns per item | spread |\n| --- | ---: | ---: |")
-    for name, entry in results.items():
-        print(f"| `{name}` | {entry['ns']:.1f} | {100 * entry['cv']:.0f} % |")
+    print_times(results)
 
     if arguments.save:
         lines = ",\n".join(f"    {json.dumps(k)}: {json.dumps(v)}" for k, v in results.items())
