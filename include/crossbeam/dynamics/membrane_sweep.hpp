@@ -337,7 +337,6 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   template <bool Viscous>
   CROSSBEAM_INLINE void run_forces(const Law& law, NodalState<R>& state, const Run& run, Work& work,
                                    T& power, StageSums& sums) {
-    const int end = run.batches * lanes;
     for (int p = 0; p < Element::points; ++p) {
       if (p == 0)
         strains<true>(batches_.template view<Wide>(state.x, run, work.positions), run, p, work);
