@@ -12,6 +12,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace {
@@ -133,11 +134,15 @@ TEST_CASE("V-BAT-01 the library's own yarns, cells, shear laws and elements pass
     passed(battery);
   }
   for (const int degrees : {60, 90, 120})
-    verify::for_each_shear<double>(degrees, [&](const std::string& name, const auto& shear) {
-      if (name == "none" || name == "tabulated") return;  // no modulus; kinks in the traction
-      Battery battery(name);
-      verification::verify_shear(battery, shear, verify::fibre_angle<double>(degrees));
-      passed(battery);
+    verify::for_each_shear<double>(degrees, [&]<class Shear>(const std::string& name,
+                                                             const Shear& shear) {
+      // Left out: no modulus; kinks in the traction.
+      if constexpr (!std::is_same_v<Shear, NoShear<double>> &&
+                    !std::is_same_v<Shear, TabulatedShear<double>>) {
+        Battery battery(name);
+        verification::verify_shear(battery, shear, verify::fibre_angle<double>(degrees));
+        passed(battery);
+      }
     });
   {
     Battery battery("elements");

@@ -75,24 +75,27 @@ inline std::vector<StencilWeight> three_point_difference(
 /// The same from any ring of five nodes or more around the centre: of all weights that are exact
 /// for every quadratic field, those closest to the fibre line, tag [B-3]. Empty when the ring does
 /// not determine them well.
-inline std::vector<StencilWeight> quadratic_difference(int centre,
-                                                       const std::vector<StencilNeighbour>& ring) {
+/// @tparam Number double; a template, so that only programs that bend compile the decomposition
+template <class Number = double>
+std::vector<StencilWeight> quadratic_difference(int centre,
+                                                const std::vector<StencilNeighbour>& ring) {
   const double size = detail::ring_radius(ring);
   if (ring.size() < 5 || !(size > 0)) return {};
 
   // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn,
   // n^2.
-  using Monomials = Eigen::Matrix<double, 5, 1>;
+  using Monomials = Eigen::Matrix<Number, 5, 1>;
+  using Gram = Eigen::Matrix<Number, 5, 5>;
   std::vector<Monomials> p(ring.size());
   std::vector<double> v(ring.size()), w(ring.size(), 0.0);
-  Eigen::Matrix<double, 5, 5> gram = Eigen::Matrix<double, 5, 5>::Zero();
+  Gram gram = Gram::Zero();
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const double s = ring[k].along / size, n = ring[k].across / size;
     p[k] << s, n, s * s, s * n, n * n;
     v[k] = 1 / ((n * n + 1e-3) * (n * n + 1e-3));
     gram += v[k] * p[k] * p[k].transpose();
   }
-  const Eigen::FullPivLU<Eigen::Matrix<double, 5, 5>> lu(gram);
+  const Eigen::FullPivLU<Gram> lu(gram);
   if (lu.rank() < 5) return {};
   // A second pass takes out what the condition of the matrix, 1e6 by the weights v, has left over.
   Monomials missing = 2 * Monomials::Unit(2);
