@@ -110,21 +110,48 @@ TEST_CASE("V-CELL-35 a followed cell has the forces of the equilibrium with seco
   rest.claim("V-CELL-35", 1e-14, "at rest, error of the force over EA/l0 L: some roundings");
   returns.claim("V-CELL-35", 1e-13, "after 60 evaluations from heights that were off by a tenth");
 
-  // Without bending: exactly nothing where the yarns are slack, as solve() has it.
-  const Cell bare(verify::table_1_without_bending());
+  // Without bending: exactly nothing where the yarns are slack, at the heights that solve() has. The
+  // yarns differ, so that nobody takes one for the other.
+  Parameters unequal = verify::table_1_without_bending();
+  unequal.weft.length *= 1.2;
+  unequal.weft.cross_section *= 1.5;
+  unequal.warp_height_fraction = 0.4;
+  const Cell bare(unequal);
   int wrong = 0, slack = 0;
   for (int k = 0; k < 2000; ++k) {
-    const double u1 = 2.5 * random.uniform(-0.05, 0.02), u2 = 2.5 * random.uniform(-0.05, 0.02);
+    const double u1 = bare.warp().L * random.uniform(-0.05, 0.02);
+    const double u2 = bare.weft().L * random.uniform(-0.05, 0.02);
     CrimpHeights<double> heights = equilibrium(bare, u1 + 1e-5, u2 - 1e-5);
     const auto now = bare.follow(u1, u2, heights);
     const auto exact = bare.solve(u1, u2);
     if (exact.contact_stiffness > 0) continue;
     ++slack;
     wrong += !(std::abs(now.F1 - exact.forces.F1) <= 1e-14 &&
-               std::abs(now.F2 - exact.forces.F2) <= 1e-14);
+               std::abs(now.F2 - exact.forces.F2) <= 1e-14 &&
+               std::abs(heights.w1 - exact.forces.w1) <= 1e-14 &&
+               std::abs(heights.w2 - exact.forces.w2) <= 1e-14);
   }
   REQUIRE(slack > 500);
-  verify::claim("V-CELL-35", wrong, 0, "slack states without bending whose force is not solve()'s");
+  verify::claim("V-CELL-35", wrong, 0,
+                "slack states without bending whose force or heights are not solve()'s");
+
+  // The two guards: the tangent of a height without a spring, and the largest step of a height.
+  verify::Worst guards;
+  for (const auto* yarn : {&bare.warp(), &bare.weft()}) {
+    const auto idle = Cell::evaluate_yarn(*yarn, -0.1 * yarn->L, 0.0);
+    guards.see(std::abs(idle.D / (1e-6 * yarn->ka) - 1), "least tangent");
+  }
+  const Cell tight(verify::table_1());
+  const double step = tight.parameters().contact_length / 8;
+  for (const double off : {-1.0, 1.0}) {
+    const CrimpHeights<double> rest = equilibrium(tight, 0.02, 0.02);
+    CrimpHeights<double> heights{rest.w1 + 4 * step * off, rest.w2 + 4 * step * off};
+    const CrimpHeights<double> before = heights;
+    tight.follow(0.02, 0.02, heights);
+    guards.see(std::abs(std::abs(heights.w1 - before.w1) / step - 1), "step of the warp", off);
+    guards.see(std::abs(std::abs(heights.w2 - before.w2) / step - 1), "step of the weft", off);
+  }
+  guards.claim("V-CELL-35", 1e-14, "guards off 1e-6 EA/l0 and L3/8, relative: a sum's rounding");
 
   // Wild jumps give finite forces and heights that come back, in both precisions.
   int lost = 0;
