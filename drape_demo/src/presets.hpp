@@ -18,20 +18,20 @@ struct Preset {
   double penalty;        ///< of the contacts, which else limits the longer step [kN/mm^3]; 0: the scene's
   /// Of the scene `realistic` at the end, against 2.5 mm, 0.5 m/s in double: what 2.5 mm are
   /// themselves away from finer meshes is not in it. Measured by `./run bench precision`,
-  /// 2026-11-27.
+  /// 2026-11-28.
   struct Error {
     double position;            ///< L2 norm over that of the displacement [-]
     double shear_rms_deg;       ///< over the area [deg]
     double shear_quantile_deg;  ///< 99 % of the area is below [deg]
     double outline_mm;          ///< largest distance [mm]
   } error;
-  double processor_s;  ///< of one core of an AMD EPYC, beside another run [s]
+  double processor_s;  ///< of one core of a Xeon with AVX-512, beside another run [s]
 };
 
 inline constexpr std::array<Preset, 3> presets{{
-    {"fast", 5, 2, Precision::float_, 25, 0.005, {4.4e-3, 0.32, 0.91, 0.30}, 0.33},
-    {"standard", 5, 1, Precision::float_, 1, 0, {2.3e-3, 0.13, 0.42, 0.13}, 3.4},
-    {"accurate", 2.5, 1, Precision::double_, 1, 0, {6.8e-4, 0.052, 0.16, 0.047}, 47},
+    {"fast", 5, 2, Precision::float_, 25, 0.005, {4.5e-3, 0.32, 0.89, 0.30}, 0.34},
+    {"standard", 5, 1, Precision::float_, 1, 0, {2.4e-3, 0.13, 0.44, 0.13}, 3.4},
+    {"accurate", 2.5, 1, Precision::double_, 1, 0, {6.8e-4, 0.052, 0.16, 0.047}, 37},
 }};
 
 /// "fast, standard or accurate"
