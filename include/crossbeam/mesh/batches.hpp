@@ -93,14 +93,14 @@ class IndexBatches {
     arrange({});
   }
 
-  /// Largest difference of two node numbers in one batch.
+  /// Largest difference of two node numbers in one batch, idle lanes before its last tuple included:
+  /// their nodes get zeros.
   [[nodiscard]] int bandwidth() const {
     int widest = 0;
     for (int b = 0; b < size(); ++b) {
       int low = std::numeric_limits<int>::max(), high = 0;
       for (int c = 0; c < Columns; ++c)
-        for (int lane = 0; lane < lanes; ++lane) {
-          if (!batches_[b].holds(lane)) continue;
+        for (int lane = 0; lane < batches_[b].length(); ++lane) {
           low = std::min(low, node(b, c, lane));
           high = std::max(high, node(b, c, lane));
         }
@@ -123,8 +123,8 @@ class IndexBatches {
     const auto stage = [&](int b) {
       int highest = 0;
       for (int c = 0; c < Columns; ++c)
-        for (int lane = 0; lane < lanes; ++lane)
-          if (batches_[b].holds(lane)) highest = std::max(highest, level(node(b, c, lane)));
+        for (int lane = 0; lane < batches_[b].length(); ++lane)
+          highest = std::max(highest, level(node(b, c, lane)));
       return highest;
     };
     std::vector<std::vector<int>> members(static_cast<std::size_t>(levels));
@@ -156,7 +156,7 @@ class IndexBatches {
     return batches_[b].first_tuple + std::max(std::popcount(batches_[b].held & up_to_lane) - 1, 0);
   }
 
-  /// Node of a column in a lane that holds a tuple.
+  /// Node of a column in a lane up to the last that holds a tuple.
   [[nodiscard]] int node(int b, int column, int lane) const {
     const Batch& batch = batches_[b];
     return batch.gather_row < 0 ? batch.first[column] + lane : row(batch, column)[lane];
