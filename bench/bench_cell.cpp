@@ -42,9 +42,8 @@ void time_cells(benchmark::State& state, const Kernel& kernel) {
   if constexpr (crossbeam::ScalarTraits<T>::derivative_order == 0) {
     using R = real_t<T>;
     using Counted = crossbeam::Counting<R>;
-    const double flops = counted_flops([&](int k) {
-      return kernel(load<Counted>(ring.u1, k), load<Counted>(ring.u2, k));
-    });
+    const double flops = counted_flops(
+        [&](int k) { return kernel(load<Counted>(ring.u1, k), load<Counted>(ring.u2, k)); });
     using Answer = decltype(kernel(load<R>(ring.u1, 0), load<R>(ring.u2, 0)));
     report_work<R>(state, ring_size, {flops, 2.0 * sizeof(R) + sizeof(Answer)});
   }
@@ -67,10 +66,9 @@ void register_energy_cell(const std::string& iterated, SolverControl control) {
     benchmark::RegisterBenchmark(
         name(what).c_str(), [kernel](benchmark::State& state) { time_cells<T>(state, kernel); });
   };
-  add("energy",
-      [=]<class S>(const S& u1, const S& u2) {
-        return cell.energy(u1, u2, cell.solve(u1, u2, control));
-      });
+  add("energy", [=]<class S>(const S& u1, const S& u2) {
+    return cell.energy(u1, u2, cell.solve(u1, u2, control));
+  });
   add("forces",
       [=]<class S>(const S& u1, const S& u2) { return cell.solve(u1, u2, control).forces; });
   add("forces_and_tangent", [=]<class S>(const S& u1, const S& u2) {
@@ -94,8 +92,8 @@ void register_second_order_cell() {
   benchmark::RegisterBenchmark(
       ("cell/forces/second_order_cell/converged/" + number_name<T>()).c_str(),
       [=](benchmark::State& state) {
-        time_cells<T>(
-            state, [&]<class S>(const S& u1, const S& u2) { return cell.solve(u1, u2).forces; });
+        time_cells<T>(state,
+                      [&]<class S>(const S& u1, const S& u2) { return cell.solve(u1, u2).forces; });
       });
 }
 

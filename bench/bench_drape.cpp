@@ -55,18 +55,18 @@ void double_dome(benchmark::State& state, double element_size, double speed,
     }
   const auto double_ = drape::Precision::double_;
   // Long enough to be measured once.
-  benchmark::RegisterBenchmark("step/double_dome/2.5_mm/axial_scaling_25/pack_double", double_dome, 2.5,
-                               1.0, double_, Skipping::all, 25.0)
+  benchmark::RegisterBenchmark("step/double_dome/2.5_mm/axial_scaling_25/pack_double", double_dome,
+                               2.5, 1.0, double_, Skipping::all, 25.0)
       ->Unit(benchmark::kMillisecond)
       ->Repetitions(1);
   benchmark::RegisterBenchmark("step/double_dome/10_mm/no_culling/pack_double", double_dome, 10.0,
                                8.0, double_, Skipping::no_culling, 1.0)
       ->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("step/double_dome/5_mm/axial_scaling_25/pack_double", double_dome, 5.0,
-                               2.0, double_, Skipping::all, 25.0)
+  benchmark::RegisterBenchmark("step/double_dome/5_mm/axial_scaling_25/pack_double", double_dome,
+                               5.0, 2.0, double_, Skipping::all, 25.0)
       ->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("step/double_dome/5_mm/axial_scaling_25/pack_float", double_dome, 5.0,
-                               2.0, drape::Precision::float_, Skipping::all, 25.0)
+  benchmark::RegisterBenchmark("step/double_dome/5_mm/axial_scaling_25/pack_float", double_dome,
+                               5.0, 2.0, drape::Precision::float_, Skipping::all, 25.0)
       ->Unit(benchmark::kMillisecond);
   return true;
 }();

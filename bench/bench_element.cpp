@@ -23,8 +23,7 @@ const char* const per_element = "time_per_element";
 
 template <class T, class Element, class Law>
 void register_element(const std::string& element, const std::string& law_name, const Law& law) {
-  const std::string name =
-      "element/" + element + "/" + law_name + "/3_sweeps/" + number_name<T>();
+  const std::string name = "element/" + element + "/" + law_name + "/3_sweeps/" + number_name<T>();
   benchmark::RegisterBenchmark(name.c_str(), [law](benchmark::State& state) {
     time_corner_forces<T, Element>(state, law, random_states(), per_element);
   });
@@ -53,10 +52,8 @@ void register_paper(const char* name) {
   for_each_number([]<class T>() {
     using R = real_t<T>;
     const crossbeam::CrossedBeamCell<R> cell(cell_parameters<R>());
-    register_law<T>("constant_shear",
-                    membrane(cell, constant_shear<R>(), SolverControl::fixed(3)));
-    register_law<T>("measured_shear",
-                    membrane(cell, measured_shear<R>(), SolverControl::fixed(3)));
+    register_law<T>("constant_shear", membrane(cell, constant_shear<R>(), SolverControl::fixed(3)));
+    register_law<T>("measured_shear", membrane(cell, measured_shear<R>(), SolverControl::fixed(3)));
   });
   return true;
 }();

@@ -159,10 +159,10 @@ void register_paper(const std::string& name) {
 /// What the loop costs itself: strains in, strains out.
 template <class T>
 void register_nothing() {
-  benchmark::RegisterBenchmark(
-      ("gauss_point/nothing/" + number_name<T>()).c_str(), [](benchmark::State& state) {
-        time_points<T>(state, [](const auto& beta) { return beta; });
-      });
+  benchmark::RegisterBenchmark(("gauss_point/nothing/" + number_name<T>()).c_str(),
+                               [](benchmark::State& state) {
+                                 time_points<T>(state, [](const auto& beta) { return beta; });
+                               });
 }
 
 void register_fabric() {

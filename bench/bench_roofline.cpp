@@ -128,8 +128,7 @@ void register_number() {
   // what any third level holds for one core.
   constexpr std::size_t KiB = 1024, MiB = 1024 * KiB;
   const auto add_read = [&](const char* where, std::size_t bytes) {
-    add("read/" + std::string(where),
-        [bytes](benchmark::State& state) { read<T>(state, bytes); });
+    add("read/" + std::string(where), [bytes](benchmark::State& state) { read<T>(state, bytes); });
   };
   add_read("l1", 16 * KiB);
   add_read("l2", 256 * KiB);

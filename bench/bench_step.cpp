@@ -11,13 +11,13 @@
 #include "support/report.hpp"
 #include "support/work.hpp"
 
-#include "crossbeam/dynamics/bending_sweep.hpp"
 #include "crossbeam/dynamics/central_difference.hpp"
-#include "crossbeam/dynamics/membrane_sweep.hpp"
 #include "crossbeam/mesh/numbering.hpp"
+#include "crossbeam/sweep/bending_sweep.hpp"
+#include "crossbeam/sweep/membrane_sweep.hpp"
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -42,7 +42,7 @@ struct Sheet {
 };
 
 struct Options {
-  int points = 1;  ///< 1 or 4
+  int points = 1;             ///< 1 or 4
   bool unstructured = false;  ///< elements and nodes in random order, then numbered by levels
   bool bending = true, viscosity = true, hourglass = true;
   bool in_flight = true;  ///< several steps together, where the mesh is large enough
@@ -143,30 +143,29 @@ void register_step(const Sheet& sheet, const std::string& what, const Options& o
   const std::string name =
       "step/" + std::to_string(sheet.elements()) + "/" + what + "/" + number_name<T>();
   const auto integrator = std::make_shared<std::unique_ptr<CentralDifference<T>>>();
-  auto* registered =
-      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-        if (!*integrator) {
-          *integrator = std::make_unique<CentralDifference<T>>(
-              vibrating_sheet<T, Cell, Quad>(sheet, options));
-          if constexpr (!std::is_same_v<Cell, Standard>)
-            if (!same_forces(**integrator, vibrating_sheet<T, Standard, crossbeam::Quadrilateral<1>>(
-                                               sheet, options)))
-              return state.SkipWithError("the policies change the forces");
-        }
-        if (threads > 0) (*integrator)->set_threads(threads);
-        constexpr int steps = 4;  // as many as are in flight at a time
-        for (auto _ : state) {
-          if (options.in_flight)
-            (*integrator)->advance(steps);
-          else
-            for (int n = 0; n < steps; ++n) (*integrator)->step();
-        }
-        report(state, steps * sheet.elements(), "time_per_element_step");
-        // The peak is that of one core.
-        if (threads == 0)
-          report_work<real_t<T>>(state, steps * sheet.elements(),
-                                 {step_flops<real_t<T>, Cell, Quad>(sheet, options)});
-      });
+  auto* registered = benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    if (!*integrator) {
+      *integrator =
+          std::make_unique<CentralDifference<T>>(vibrating_sheet<T, Cell, Quad>(sheet, options));
+      if constexpr (!std::is_same_v<Cell, Standard>)
+        if (!same_forces(**integrator,
+                         vibrating_sheet<T, Standard, crossbeam::Quadrilateral<1>>(sheet, options)))
+          return state.SkipWithError("the policies change the forces");
+    }
+    if (threads > 0) (*integrator)->set_threads(threads);
+    constexpr int steps = 4;  // as many as are in flight at a time
+    for (auto _ : state) {
+      if (options.in_flight)
+        (*integrator)->advance(steps);
+      else
+        for (int n = 0; n < steps; ++n) (*integrator)->step();
+    }
+    report(state, steps * sheet.elements(), "time_per_element_step");
+    // The peak is that of one core.
+    if (threads == 0)
+      report_work<real_t<T>>(state, steps * sheet.elements(),
+                             {step_flops<real_t<T>, Cell, Quad>(sheet, options)});
+  });
   registered->Unit(benchmark::kMicrosecond);
   if (threads > 0) registered->UseRealTime();
 }

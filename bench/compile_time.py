@@ -32,7 +32,7 @@ SOURCES = {
     "one_law_one_step": """
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/dynamics/central_difference.hpp"
-#include "crossbeam/dynamics/membrane_sweep.hpp"
+#include "crossbeam/sweep/membrane_sweep.hpp"
 
 #include <memory>
 #include <utility>

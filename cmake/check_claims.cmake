@@ -60,7 +60,7 @@ endfunction()
 
 file(GLOB_RECURSE test_files "${ROOT}/verify/*.cpp")
 file(GLOB_RECURSE theory_files "${ROOT}/docs/theory/*.md")
-file(GLOB_RECURSE header_files "${ROOT}/include/*.hpp")
+file(GLOB_RECURSE header_files "${ROOT}/include/*.hpp" "${ROOT}/drape_demo/src/*.hpp")
 read_files(table "${ROOT}/verify/README.md")
 read_files(tests ${test_files})
 read_files(theory ${theory_files})

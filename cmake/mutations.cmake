@@ -59,6 +59,8 @@ mutation(layering "against the direction of the layers" include/crossbeam/base/l
   "#include \"crossbeam/cell/cell.hpp\"\n")
 mutation(layering "against the direction of the layers" include/crossbeam/crossbeam.hpp
   "#include \"crossbeam/adapters/adapter.hpp\"\n")
+mutation(layering "beside it in the same layer" include/crossbeam/cell/cell.hpp
+  "#include \"crossbeam/kinematics/kinematics.hpp\"\n")
 mutation(layering "the umbrella is for users only" include/crossbeam/cell/cell.hpp
   "#include \"crossbeam/crossbeam.hpp\"\n")
 mutation(layering "detail of another folder" include/crossbeam/cell/cell.hpp

@@ -55,9 +55,10 @@ struct CornerForces {
 
 /// Positions -> strain -> cell -> stress -> corner forces, of the elements from `first` on.
 template <class T, class Element, class Law>
-CROSSBEAM_INLINE CornerForces<T, Element> corner_forces(
-    const Law& law, const UnitElement<T, Element>& element,
-    const Ring<crossbeam::real_t<T>>& ring, int first) {
+CROSSBEAM_INLINE CornerForces<T, Element> corner_forces(const Law& law,
+                                                        const UnitElement<T, Element>& element,
+                                                        const Ring<crossbeam::real_t<T>>& ring,
+                                                        int first) {
   using crossbeam::Vec3;
   Vec3<T> x[Element::corners], D[Element::vectors], force[Element::vectors]{};
   for (std::size_t a = 0; a < Element::corners; ++a) {

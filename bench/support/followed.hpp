@@ -14,8 +14,8 @@
 #include "support/work.hpp"
 
 #include "crossbeam/cell/crossed_beam.hpp"
-#include "crossbeam/dynamics/point_rows.hpp"
-#include "crossbeam/mesh/batches.hpp"
+#include "crossbeam/sweep/index_batches.hpp"
+#include "crossbeam/sweep/point_rows.hpp"
 
 #include <array>
 #include <cmath>
@@ -177,7 +177,8 @@ void time_followed(benchmark::State& state, const Law& law, const RingStates& st
   counted.visit(1, [](int, const auto&) {});
   const double flops = static_cast<double>(crossbeam::operation_count().flops()) / ring_size;
   constexpr double numbers = chain == Chain::corners_to_forces ? 2 * 3 * 4 : 6;
-  report_work<R>(state, ring_size, {flops, (numbers + 4) * sizeof(R)});  // and the heights to and fro
+  report_work<R>(state, ring_size,
+                 {flops, (numbers + 4) * sizeof(R)});  // and the heights to and fro
 }
 
 }  // namespace bench

@@ -60,8 +60,8 @@ class Cell {
   /// Forces (F_warp, F_weft). The iteration begins at the forces given: none for a cold start,
   /// those of the cell's previous answer for a warm one.
   template <Solver solver>
-  [[nodiscard]] Eigen::Vector2d forces(
-      const Eigen::Vector2d& u, Eigen::Vector2d F = Eigen::Vector2d::Zero()) const {
+  [[nodiscard]] Eigen::Vector2d forces(const Eigen::Vector2d& u,
+                                       Eigen::Vector2d F = Eigen::Vector2d::Zero()) const {
     for (int iteration = 0; iteration < 50; ++iteration) {
       const Eigen::Matrix4d K = K_E_ + geometric_stiffness(F);
       Eigen::Vector4d x;
@@ -155,10 +155,10 @@ class Membrane {
                                       Eigen::Vector2d* previous = nullptr) const {
     Eigen::Matrix<double, 4, 2> dN;  // of the shape functions at the centre
     dN << -0.25, -0.25, 0.25, -0.25, 0.25, 0.25, -0.25, 0.25;
-    const Base G = X * dN, g = x * dN;                                   // Eq. 1
-    const Eigen::Matrix2d A = G.transpose() * G, a = g.transpose() * g;  // Eq. 2
-    const Eigen::Matrix2d alpha = (a - A) / 2;                           // Eq. 3
-    const Eigen::Matrix2d d = cartesian_from_convected(A);               // Eq. 4, 5, 7
+    const Base G = X * dN, g = x * dN;                                              // Eq. 1
+    const Eigen::Matrix2d A = G.transpose() * G, a = g.transpose() * g;             // Eq. 2
+    const Eigen::Matrix2d alpha = (a - A) / 2;                                      // Eq. 3
+    const Eigen::Matrix2d d = cartesian_from_convected(A);                          // Eq. 4, 5, 7
     const Eigen::Matrix2d S = stress<solver>(d * alpha * d.transpose(), previous);  // Eq. 6
     const double area = 4 * std::sqrt(A.determinant());
     return area * g * (d.transpose() * S * d) * dN.transpose();

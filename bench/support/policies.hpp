@@ -24,8 +24,9 @@ class FixedCell : public crossbeam::CrossedBeamCell<R> {
     const T k3(this->contact_stiffness()), most(this->parameters().contact_length / R(8));
     const T D12 = y1.D * y2.D, closed = D12 + k3 * (y1.D + y2.D);
     const T both = T(1) / (closed * D12);
-    const T q = maximum(k3 * ((y1.g - heights.w1 * y1.D) * y2.D +
-                              (y2.g - heights.w2 * y2.D) * y1.D) * (both * D12), T(0));
+    const T q = maximum(
+        k3 * ((y1.g - heights.w1 * y1.D) * y2.D + (y2.g - heights.w2 * y2.D) * y1.D) * (both * D12),
+        T(0));
     const T r = both * closed;
     const T dw1 = maximum(minimum((q - y1.g) * (y2.D * r), most), -most);
     const T dw2 = maximum(minimum((q - y2.g) * (y1.D * r), most), -most);

@@ -90,7 +90,8 @@ inline RingStates history_states(const toml::table& history, const std::string& 
   for (const auto& [name, list] : {std::pair{"weft", &weft}, {"shear", &shear}})
     if (list->size() != warp.size())
       throw InputError(std::string("history.") + name, std::to_string(list->size()) + " numbers",
-                       "", "as many as history.warp, " + std::to_string(warp.size()) + " (" + file +
+                       "",
+                       "as many as history.warp, " + std::to_string(warp.size()) + " (" + file +
                            ":" + std::to_string(history.get(name)->source().begin.line) + ")");
   RingStates states;
   for (int k = 0; k < ring_size; ++k) {
@@ -186,17 +187,16 @@ class SceneFile {
             membrane(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure), control),
             iterated);
       case drape::ShearLawKind::polynomial:
-        return use(membrane(cell,
-                            PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle),
-                            control),
-                   iterated);
-      case drape::ShearLawKind::tabulated:
         return use(
-            membrane(cell,
-                     TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)),
-                                       angle),
+            membrane(cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle),
                      control),
             iterated);
+      case drape::ShearLawKind::tabulated:
+        return use(membrane(cell,
+                            TabulatedShear<R>(
+                                TabulatedCurve<R>(real(shear.angle), real(shear.traction)), angle),
+                            control),
+                   iterated);
     }
   }
 

@@ -29,8 +29,8 @@ constexpr double stretched = 0.02;  // both yarns at the start [mm]
 /// What the solver's functions share.
 struct Problem {
   const Cell& cell;
-  double force[2];      // that hold the yarns at the start [kN]
-  bool closed = true;   // contact
+  double force[2];     // that hold the yarns at the start [kN]
+  bool closed = true;  // contact
 
   explicit Problem(const Cell& c) : cell(c) {
     const auto at = cell.solve(stretched, stretched);
@@ -39,7 +39,8 @@ struct Problem {
   }
   /// Lets go of both yarns until they are slack, and pulls again.
   [[nodiscard]] double pull(int yarn, double t) const {
-    return force[yarn] * (yarn == 0 ? 0.48 + 0.52 * std::cos(0.8 * t) : 0.5 + 0.5 * std::cos(0.7 * t));
+    return force[yarn] *
+           (yarn == 0 ? 0.48 + 0.52 * std::cos(0.8 * t) : 0.5 + 0.5 * std::cos(0.7 * t));
   }
 };
 
@@ -107,8 +108,7 @@ int main() {
   void* ida = IDACreate(context);
   bool good = IDAInit(ida, residual, 0.0, y, dy) == IDA_SUCCESS &&
               IDASStolerances(ida, 1e-10, 1e-12) == IDA_SUCCESS &&
-              IDASetUserData(ida, &problem) == IDA_SUCCESS &&
-              IDASetId(ida, kind) == IDA_SUCCESS &&
+              IDASetUserData(ida, &problem) == IDA_SUCCESS && IDASetId(ida, kind) == IDA_SUCCESS &&
               IDASetMaxNumSteps(ida, 1000000) == IDA_SUCCESS &&
               IDARootInit(ida, 1, gap) == IDA_SUCCESS &&
               IDASetLinearSolver(ida, solver, matrix) == IDA_SUCCESS;
@@ -135,7 +135,7 @@ int main() {
   }
   // The scheme's own error, (step times frequency)^2 of some 1e-6, is the larger one.
   const bool agree = good && changes >= 2 && worst < 1e-6;
-  std::printf("heights as unknowns and condensed: %s\n", agree ? "agree to 1e-6 mm" : "DISAGREE"); 
+  std::printf("heights as unknowns and condensed: %s\n", agree ? "agree to 1e-6 mm" : "DISAGREE");
 
   IDAFree(&ida);
   SUNLinSolFree(solver);

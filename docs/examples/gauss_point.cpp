@@ -22,8 +22,7 @@ int main() {
   if (response.status != CellStatus::converged) return 1;
   std::printf("S11 %.6f  S22 %.6f  S12 %.6f kN/mm\n", response.S(0, 0), response.S(1, 1),
               response.S(0, 1));
-  std::printf("dS11/dE11 %.4f  dS11/dE22 %.4f kN/mm\n", response.dS_dE(0, 0),
-              response.dS_dE(0, 1));
+  std::printf("dS11/dE11 %.4f  dS11/dE22 %.4f kN/mm\n", response.dS_dE(0, 0), response.dS_dE(0, 1));
 
   // [begin:yarns]
   const auto state = law.evaluate(fibre_strain(E, fibre_from_cartesian(fibres)));

@@ -85,7 +85,8 @@ Errors compare(const FormedState& state, const FormedState& reference) {
   }
   out.shear_rms = std::sqrt(squares / static_cast<double>(angles.size()));
   std::sort(angles.begin(), angles.end());
-  out.shear_quantile = angles[static_cast<std::size_t>(0.99 * static_cast<double>(angles.size() - 1))];
+  out.shear_quantile =
+      angles[static_cast<std::size_t>(0.99 * static_cast<double>(angles.size() - 1))];
   const auto line = border(b);
   for (const Vec3<double>& p : border(a)) out.outline = std::max(out.outline, distance(p, line));
   return out;

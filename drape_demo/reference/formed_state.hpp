@@ -3,7 +3,7 @@
 /// A formed sheet as plain numbers, and how far two of them are apart: the error measures of the
 /// work-precision diagrams.
 
-#include "crossbeam/dynamics/model.hpp"
+#include "crossbeam/model/model.hpp"
 
 #include <vector>
 

@@ -35,8 +35,8 @@ struct Options {
 struct Run {
   std::string family, setting;  ///< what varies, and its value
   std::function<Frames()> go;
-  bool smooth = true;           ///< part of the comparison in time
-  long long elements = 0;       ///< of its mesh
+  bool smooth = true;      ///< part of the comparison in time
+  long long elements = 0;  ///< of its mesh
   Frames frames{};
 };
 
@@ -78,26 +78,30 @@ struct Comparison {
 template <class Make>
 void add_references(Comparison& c, const Make& make, double tolerance) {
   c.time_reference = c.runs.size();
-  c.runs.push_back(
-      {"reference", fmt::format("Runge-Kutta 5, {:g}", tolerance),
-       [=] { return integrate<reference::RungeKutta5>(make(), {tolerance, tolerance}); }});
+  c.runs.push_back({"reference", fmt::format("Runge-Kutta 5, {:g}", tolerance), [=] {
+                      return integrate<reference::RungeKutta5>(make(), {tolerance, tolerance});
+                    }});
   c.second_opinion = c.runs.size();
-  c.runs.push_back({"second opinion", fmt::format("Adams, {:g}", tolerance),
-                    [=] { return integrate<reference::Adams>(make(), {tolerance, tolerance}); }});
+  c.runs.push_back({"second opinion", fmt::format("Adams, {:g}", tolerance), [=] {
+                      return integrate<reference::Adams>(make(), {tolerance, tolerance});
+                    }});
 }
 
 template <class Make>
 void add_integrators(Comparison& c, const Make& make, const std::vector<double>& tolerances,
                      const std::vector<double>& implicit) {
   for (double t : tolerances) {
-    c.runs.push_back({"ARKODE Runge-Kutta 5", fmt::format("tolerance {:g}", t),
-                      [=] { return integrate<reference::RungeKutta5>(make(), {t, t}); }});
-    c.runs.push_back({"CVODE Adams", fmt::format("tolerance {:g}", t),
-                      [=] { return integrate<reference::Adams>(make(), {t, t}); }});
+    c.runs.push_back({"ARKODE Runge-Kutta 5", fmt::format("tolerance {:g}", t), [=] {
+                        return integrate<reference::RungeKutta5>(make(), {t, t});
+                      }});
+    c.runs.push_back({"CVODE Adams", fmt::format("tolerance {:g}", t), [=] {
+                        return integrate<reference::Adams>(make(), {t, t});
+                      }});
   }
   for (double t : implicit)
-    c.runs.push_back({"CVODE BDF, KLU", fmt::format("tolerance {:g}", t),
-                      [=] { return integrate<reference::BackwardDifferences>(make(), {t, t}); }});
+    c.runs.push_back({"CVODE BDF, KLU", fmt::format("tolerance {:g}", t), [=] {
+                        return integrate<reference::BackwardDifferences>(make(), {t, t});
+                      }});
 }
 
 Comparison sphere(bool brief) {
@@ -181,11 +185,12 @@ Comparison dome(bool brief) {
                       [=] { return explicit_run(dome_case<double>(s), 0.9); }});
   }
   const DrapeCase realistic = load_scene(scene_path("realistic"));
-  const auto scene = [&](const std::string& family, double mesh, double V, int points, bool is_float,
-                         double axial_scaling = 1) {
+  const auto scene = [&](const std::string& family, double mesh, double V, int points,
+                         bool is_float, double axial_scaling = 1) {
     DrapeCase s = realistic;
     s.integration.axial_scaling = axial_scaling;
-    if (axial_scaling > 1) s.contact.penalty = 0.005;  // else the contact's own step is the shorter one
+    if (axial_scaling > 1)
+      s.contact.penalty = 0.005;  // else the contact's own step is the shorter one
     s.blank.element_size = mesh;
     s.process.speed = V;
     s.blank.gauss_points = points;

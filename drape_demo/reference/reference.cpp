@@ -39,11 +39,13 @@ Json reference_of(const std::string& name, const std::function<Case<double>()>& 
   out["tolerance"] = tolerance;
   out["elements"] = start.mesh.element_count();
   fmt::print("\n{}, tolerance {:g}\n", name, tolerance);
-  fmt::print("  Runge-Kutta 5: {} steps, {} evaluations, {:.1f} s;  Adams: {} steps, {} evaluations, "
-             "{:.1f} s\n",
-             erk.steps, erk.evaluations, erk.processor_s, adams.steps, adams.evaluations,
-             adams.processor_s);
-  fmt::print("  time [ms]   displacement [mm]   gap, largest [mm]   gap, L2 [-]   gap, shear rms [deg]\n");
+  fmt::print(
+      "  Runge-Kutta 5: {} steps, {} evaluations, {:.1f} s;  Adams: {} steps, {} evaluations, "
+      "{:.1f} s\n",
+      erk.steps, erk.evaluations, erk.processor_s, adams.steps, adams.evaluations,
+      adams.processor_s);
+  fmt::print(
+      "  time [ms]   displacement [mm]   gap, largest [mm]   gap, L2 [-]   gap, shear rms [deg]\n");
   double worst = 0, displacement = 0;
   for (std::size_t k = 0; k < erk.at.size(); ++k) {
     const Errors gap = compare(adams.at[k], erk.at[k]), moved = compare(flat, erk.at[k]);
@@ -67,9 +69,10 @@ Json reference_of(const std::string& name, const std::function<Case<double>()>& 
     row["points_mm"] = std::move(points);
     out["times"].push_back(std::move(row));
   }
-  for (const auto& [key, run] : {std::pair<const char*, const Frames*>{"runge_kutta_5", &erk},
-                                 {"adams", &adams}})
-    out[key] = {{"steps", run->steps}, {"evaluations", run->evaluations},
+  for (const auto& [key, run] :
+       {std::pair<const char*, const Frames*>{"runge_kutta_5", &erk}, {"adams", &adams}})
+    out[key] = {{"steps", run->steps},
+                {"evaluations", run->evaluations},
                 {"processor_s", run->processor_s}};
   out["gap_over_displacement"] = worst / displacement;
   fmt::print("  largest gap over largest displacement: {:.1e}\n", worst / displacement);
@@ -90,13 +93,13 @@ Json formed_equilibrium() {
   const double begin = processor_seconds();
   const reference::StaticResult r = reference::find_equilibrium(problem);
   const double seconds = processor_seconds() - begin;
-  const Errors moved =
-      compare(before, formed_state(run.model(), start.mesh, start.nx, start.ny));
-  fmt::print("\nEquilibrium of the formed double dome, 5 mm: {} after {} iterations and {} "
-             "backtracks in {:.1f} s\n  unbalanced force {:.1e} of the internal forces; the explicit "
-             "end state is {:.3f} mm and {:.3f} deg (rms) away\n  unbalanced force [kN]:",
-             r.converged ? "found" : "NOT found", r.iterations, r.backtracks, seconds, r.residual,
-             moved.largest, moved.shear_rms);
+  const Errors moved = compare(before, formed_state(run.model(), start.mesh, start.nx, start.ny));
+  fmt::print(
+      "\nEquilibrium of the formed double dome, 5 mm: {} after {} iterations and {} "
+      "backtracks in {:.1f} s\n  unbalanced force {:.1e} of the internal forces; the explicit "
+      "end state is {:.3f} mm and {:.3f} deg (rms) away\n  unbalanced force [kN]:",
+      r.converged ? "found" : "NOT found", r.iterations, r.backtracks, seconds, r.residual,
+      moved.largest, moved.shear_rms);
   for (double f : r.history) fmt::print(" {:.1e}", f);
   fmt::print("\n");
   return {{"case", "double dome, formed"},
@@ -118,19 +121,20 @@ int run(const Options& o) {
   if (wanted("sphere")) {
     SphereSheet sheet;
     sheet.elements = 12;
-    all["sphere"] = reference_of("sheet over a sphere, 5 mm",
-                                 [sheet] { return sphere_case<double>(sheet); }, o.tolerance);
+    all["sphere"] = reference_of(
+        "sheet over a sphere, 5 mm", [sheet] { return sphere_case<double>(sheet); }, o.tolerance);
     // What has no reference: without bending a membrane buckles at the size of its elements, and
     // rounding chooses the pattern.
     sheet.bending = 0;
     sheet.mass_damping = 0.02;
-    all["sphere_without_bending"] =
-        reference_of("the same without bending and hardly damped: chaotic",
-                     [sheet] { return sphere_case<double>(sheet); }, o.tolerance);
+    all["sphere_without_bending"] = reference_of(
+        "the same without bending and hardly damped: chaotic",
+        [sheet] { return sphere_case<double>(sheet); }, o.tolerance);
   }
   if (wanted("dome"))
-    all["dome"] = reference_of("double dome `realistic`, 5 mm, 2 m/s, contact in rate form",
-                               [c = smooth_dome()] { return dome_case<double>(c); }, o.tolerance);
+    all["dome"] = reference_of(
+        "double dome `realistic`, 5 mm, 2 m/s, contact in rate form",
+        [c = smooth_dome()] { return dome_case<double>(c); }, o.tolerance);
   if (wanted("statics")) all["statics"] = formed_equilibrium();
   const std::filesystem::path file = std::filesystem::path(o.out) / "reference.json";
   write_json(file, all);
@@ -142,8 +146,9 @@ int run(const Options& o) {
 
 int main(int count, char** arguments) {
   Options o;
-  CLI::App app("Reference drapes by two integrators of SUNDIALS, and the formed part's equilibrium.",
-               "crossbeam-reference");
+  CLI::App app(
+      "Reference drapes by two integrators of SUNDIALS, and the formed part's equilibrium.",
+      "crossbeam-reference");
   app.add_option("--tolerance", o.tolerance, "relative and absolute [mm, mm/ms], 1e-14 to 1e-2");
   app.add_option("--case", o.which, "all (default), sphere, dome or statics")
       ->check(CLI::IsMember({"all", "sphere", "dome", "statics"}));

@@ -17,17 +17,17 @@ namespace crossbeam::drape {
 struct SphereSheet {
   static constexpr double side = 60, radius = 15;  ///< [mm]
   static constexpr double areal_mass = 0.743e-6;   ///< [kg/mm^2]
-  int elements = 8;                    ///< along a side
-  double stroke = 14, duration = 7;    ///< of the ball [mm], [ms]
-  bool held = false;                   ///< the rim is held; else it slides in its plane
-  int gauss_points = 1;                ///< 1 or 4
-  int cell_sweeps = 5;                 ///< beyond rounding for these strains
-  double mass_damping = 1;             ///< [1/ms]
-  double bending = 1.4e-3;             ///< of both families [kN mm]; 0 switches bending off
-  double perturbation = 0;             ///< of the start, z of the inner nodes [mm]
+  int elements = 8;                                ///< along a side
+  double stroke = 14, duration = 7;                ///< of the ball [mm], [ms]
+  bool held = false;                               ///< the rim is held; else it slides in its plane
+  int gauss_points = 1;                            ///< 1 or 4
+  int cell_sweeps = 5;                             ///< beyond rounding for these strains
+  double mass_damping = 1;                         ///< [1/ms]
+  double bending = 1.4e-3;  ///< of both families [kN mm]; 0 switches bending off
+  double perturbation = 0;  ///< of the start, z of the inner nodes [mm]
   std::uint64_t seed = 1;
   Friction friction_model = Friction::smooth;
-  double smoothing = 0.1;              ///< of the penalty [mm]
+  double smoothing = 0.1;  ///< of the penalty [mm]
 
   [[nodiscard]] Mesh<4> mesh() const { return rectangle(side, side, elements, elements); }
 
@@ -75,10 +75,10 @@ struct SphereSheet {
     const MembraneOptions options{1e-4, 0.06};
     if (gauss_points == 1)
       out.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, Law>>(sheet, law<R>(), areal_mass,
-                                                                       options));
+                                                                        options));
     else
       out.add(std::make_unique<MembraneSweep<T, Quadrilateral<4>, Law>>(sheet, law<R>(), areal_mass,
-                                                                       options));
+                                                                        options));
     if (bending > 0)
       out.add(
           std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{bending, bending}, areal_mass));

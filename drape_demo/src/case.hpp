@@ -5,7 +5,7 @@
 /// Units: kN, mm, ms, kg (so velocities are in m/s and energies in J = kN mm).
 
 #include "crossbeam/cell/parameters.hpp"
-#include "crossbeam/contact/tool_contact.hpp"
+#include "crossbeam/contact/rigid_tool_contact.hpp"
 #include "crossbeam/law/shear.hpp"
 
 #include <cstdint>
@@ -24,8 +24,8 @@ struct ShearInput {
   ShearMeasure measure = ShearMeasure::tensor;  ///< constant: S12 = G E12, or G 2 E12
   /// polynomial: G(|g|) = sum c_k |g|^k, g in rad [kN/mm]; by default law A of Twintex
   std::vector<double> coefficients{0.051e-3, -0.83e-3, 6.1275e-3, -12.0972e-3, 8.48e-3};
-  std::vector<double> angle;         ///< tabulated: shear angles, from 0, increasing [rad]
-  std::vector<double> traction;      ///< tabulated: shear traction at those angles, from 0 [kN/mm]
+  std::vector<double> angle;     ///< tabulated: shear angles, from 0, increasing [rad]
+  std::vector<double> traction;  ///< tabulated: shear traction at those angles, from 0 [kN/mm]
 };
 
 struct FabricInput {
@@ -42,35 +42,35 @@ struct FabricInput {
 };
 
 struct BlankInput {
-  double half_width = 135;   ///< along x [mm]
-  double half_length = 235;  ///< along y [mm]
-  double element_size = 5;   ///< edge aimed at [mm]
-  double layout = 0;         ///< warp direction from the x axis [deg]: 0 or 45
-  int gauss_points = 1;      ///< 1 or 4
+  double half_width = 135;            ///< along x [mm]
+  double half_length = 235;           ///< along y [mm]
+  double element_size = 5;            ///< edge aimed at [mm]
+  double layout = 0;                  ///< warp direction from the x axis [deg]: 0 or 45
+  int gauss_points = 1;               ///< 1 or 4
   double hourglass_stiffness = 1e-4;  ///< [kN/mm]
   double perturbation = 0;            ///< amplitude of a random start perturbation [mm]
   std::uint64_t seed = 1;             ///< of that perturbation
 };
 
 struct ProcessInput {
-  double stroke = 60;          ///< [mm]
-  double speed = 2;            ///< mean punch speed V [m/s]
-  double hold = 0.1;           ///< hold after the stroke, as a share of its duration [-]
-  double holder_force = 0.1;   ///< on the full part [kN]
-  double holder_ramp = 0.03;   ///< share of the stroke over which the force rises [-]
-  double holder_mass = 0.05;   ///< of the full ring [kg]
+  double stroke = 60;                 ///< [mm]
+  double speed = 2;                   ///< mean punch speed V [m/s]
+  double hold = 0.1;                  ///< hold after the stroke, as a share of its duration [-]
+  double holder_force = 0.1;          ///< on the full part [kN]
+  double holder_ramp = 0.03;          ///< share of the stroke over which the force rises [-]
+  double holder_mass = 0.05;          ///< of the full ring [kg]
   double holder_damping_ratio = 0.2;  ///< of the holder on the fabric's contact stiffness [-]
 };
 
 struct ContactInput {
-  double penalty = 0.05;        ///< contact pressure per penetration [kN/mm^3]
-  double damping_ratio = 0.2;   ///< of a node on the penalty [-]
-  double friction = 0.2;        ///< Coulomb coefficient, fabric on tool [-]
+  double penalty = 0.05;       ///< contact pressure per penetration [kN/mm^3]
+  double damping_ratio = 0.2;  ///< of a node on the penalty [-]
+  double friction = 0.2;       ///< Coulomb coefficient, fabric on tool [-]
   Friction friction_model = Friction::elastic_stick;
-  double viscous_slip = 0.02;   ///< viscous, smooth: full-friction slip as a share of the speed [-]
-  double smoothing = 0;         ///< depth over which the penalty sets in; 0: at once [mm]
-  double table_spacing = 0.5;   ///< of the tabulated tool surface [mm]
-  bool culling = true;          ///< skip nodes that provably cannot touch a tool
+  double viscous_slip = 0.02;  ///< viscous, smooth: full-friction slip as a share of the speed [-]
+  double smoothing = 0;        ///< depth over which the penalty sets in; 0: at once [mm]
+  double table_spacing = 0.5;  ///< of the tabulated tool surface [mm]
+  bool culling = true;         ///< skip nodes that provably cannot touch a tool
 };
 
 struct IntegrationInput {

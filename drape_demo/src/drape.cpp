@@ -30,8 +30,7 @@ class QuarterDrape {
  public:
   using T = NativePack<R>;
 
-  explicit QuarterDrape(const DrapeCase& c)
-      : case_(c), built_(c), integrator_(built_.release()) {
+  explicit QuarterDrape(const DrapeCase& c) : case_(c), built_(c), integrator_(built_.release()) {
     // Faster than sound in the yarns nothing in this model moves, unless the yarns are softer than
     // the punch is slow.
     const double bound = CrossedBeamCell<double>(c.fabric.cell).membrane_stiffness_bound();
@@ -46,9 +45,11 @@ class QuarterDrape {
     const double dt = case_.integration.step_factor * integrator_.critical_step();
     const double duration = punch_.duration * (1 + case_.process.hold);
     const auto steps = static_cast<std::int64_t>(std::ceil(duration / dt));
-    const std::int64_t sample_every = std::max<std::int64_t>(1, steps / case_.output.ledger_samples);
-    const std::int64_t frame_every =
-        case_.output.frames > 0 ? std::max<std::int64_t>(1, steps / case_.output.frames) : steps + 1;
+    const std::int64_t sample_every =
+        std::max<std::int64_t>(1, steps / case_.output.ledger_samples);
+    const std::int64_t frame_every = case_.output.frames > 0
+                                         ? std::max<std::int64_t>(1, steps / case_.output.frames)
+                                         : steps + 1;
     constexpr std::int64_t update_every = 128;
     integrator_.start(dt);
     for (std::int64_t n = 0; n < steps;) {
@@ -156,8 +157,8 @@ class QuarterDrape {
                " deg, admissible below 85: warp and weft fall together";
       for (int i = 0; i < 2; ++i)
         if (!(s.stretch[i] > 0.2 && s.stretch[i] < 1.5))
-          what = std::string(i == 0 ? "warp" : "weft") + " stretch " + detail::to_text(s.stretch[i]) +
-                 ", admissible 0.2 to 1.5";
+          what = std::string(i == 0 ? "warp" : "weft") + " stretch " +
+                 detail::to_text(s.stretch[i]) + ", admissible 0.2 to 1.5";
       if (!(s.cell_correction < 1e-3 * longest))
         what = "the cell is not in equilibrium: its heights are off by " +
                detail::to_text(s.cell_correction) + " mm, admissible below " +
@@ -264,7 +265,8 @@ class QuarterDrape {
 
 DrapeResult run(const DrapeCase& drape_case, const Progress& progress) {
   validate(drape_case);
-  const YarnParameters<double>&warp = drape_case.fabric.cell.warp, &weft = drape_case.fabric.cell.weft;
+  const YarnParameters<double>&warp = drape_case.fabric.cell.warp,
+        &weft = drape_case.fabric.cell.weft;
   const bool balanced =
       warp.youngs_modulus == weft.youngs_modulus && warp.cross_section == weft.cross_section &&
       warp.second_moment_of_area == weft.second_moment_of_area && warp.length == weft.length &&

@@ -76,7 +76,8 @@ class GridField {
             t * (0.5 + t * (2 - 1.5 * t)), t * t * (0.5 * t - 0.5)};
   }
   [[nodiscard]] double value(int i, int j) const {
-    const int i0 = std::clamp(i, 0, std::max(nu_ - 2, 0)), j0 = std::clamp(j, 0, std::max(nv_ - 2, 0));
+    const int i0 = std::clamp(i, 0, std::max(nu_ - 2, 0)),
+              j0 = std::clamp(j, 0, std::max(nv_ - 2, 0));
     if (nu_ > 1 && (i < 0 || i >= nu_))
       return value(i0, j) + (i - i0) * (value(i0 + 1, j) - value(i0, j));
     if (nv_ > 1 && (j < 0 || j >= nv_))
@@ -169,8 +170,9 @@ std::vector<ShearPoint> shear_points(const QuarterGrid& grid, const std::vector<
         const int n[4] = {grid.node(i, j), grid.node(i + 1, j), grid.node(i + 1, j + 1),
                           grid.node(i, j + 1)};
         double xi = 0, eta = 0;
-        if (!locate({plan(points, n[0]), plan(points, n[1]), plan(points, n[2]), plan(points, n[3])},
-                    p, xi, eta))
+        if (!locate(
+                {plan(points, n[0]), plan(points, n[1]), plan(points, n[2]), plan(points, n[3])}, p,
+                xi, eta))
           continue;
         double u = i + xi, v = j + eta;
         refine(x, y, p, u, v);

@@ -113,11 +113,14 @@ Options parse_options(const std::vector<std::string>& arguments) {
 
   CLI::App app("Drapes a quarter of the double dome with a dry woven fabric.", "crossbeam-drape");
   app.get_formatter()->column_width(28);
-  app.footer("\nPresets set --mesh, --speed and --precision; \"scaled\" also integration.axial_scaling and a "
-             "softer contact,\nwhose yarn tensions are less exact. Measured for the scene realistic, all "
-             "errors together,\nagainst 2.5 mm, 0.5 m/s in double (whose own error of mesh is not in it), and "
-             "seconds of one core\n(./run bench precision):\n" +
-             preset_table() + footer);
+  app.footer(
+      "\nPresets set --mesh, --speed and --precision; \"scaled\" also integration.axial_scaling "
+      "and a "
+      "softer contact,\nwhose yarn tensions are less exact. Measured for the scene realistic, all "
+      "errors together,\nagainst 2.5 mm, 0.5 m/s in double (whose own error of mesh is not in it), "
+      "and "
+      "seconds of one core\n(./run bench precision):\n" +
+      preset_table() + footer);
   app.set_version_flag("--version", std::string("crossbeam ") + CROSSBEAM_VERSION);
   app.add_option("--case", case_name, "realistic (default), paper, paper-literal, or a path *.toml")
       ->option_text("NAME");

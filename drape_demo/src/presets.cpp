@@ -20,7 +20,8 @@ std::string preset_table() {
   std::string text;
   for (const Preset& p : presets)
     text += fmt::format(
-        "  {:9} {:3g} mm, {:g} m/s, {:6} {}  positions {:.2f} %, shear rms {:.2f} deg (99 % of the area "
+        "  {:9} {:3g} mm, {:g} m/s, {:6} {}  positions {:.2f} %, shear rms {:.2f} deg (99 % of the "
+        "area "
         "{:.1f}), outline {:.2f} mm; {:.2g} s\n",
         p.name, p.element_size, p.speed, p.precision == Precision::float_ ? "float" : "double",
         p.axial_scaling > 1 ? fmt::format("scaled {:g}", p.axial_scaling) : "         ",

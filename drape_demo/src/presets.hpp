@@ -15,7 +15,7 @@ struct Preset {
   double speed;         ///< mean punch speed [m/s]
   Precision precision;
   double axial_scaling;  ///< of the yarns [-]
-  double penalty;        ///< of the contacts, which else limits the longer step [kN/mm^3]; 0: the scene's
+  double penalty;  ///< of the contacts, which else limits the longer step [kN/mm^3]; 0: the scene's
   /// Of the scene `realistic` at the end, against 2.5 mm, 0.5 m/s in double: what 2.5 mm are
   /// themselves away from finer meshes is not in it. Measured by `./run bench precision`,
   /// 2026-11-28.

@@ -1,6 +1,7 @@
 #include "quarter_model.hpp"
 
 #include "crossbeam/crossbeam.hpp"
+#include "double_dome.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -23,8 +24,7 @@ QuarterModel<R>::QuarterModel(const DrapeCase& c)
   add_membrane();
   if (c.fabric.warp_bending_stiffness > 0 || c.fabric.weft_bending_stiffness > 0)
     model_.add(std::make_unique<BendingSweep<NativePack<R>>>(
-        mesh_,
-        BendingStiffness{c.fabric.warp_bending_stiffness, c.fabric.weft_bending_stiffness},
+        mesh_, BendingStiffness{c.fabric.warp_bending_stiffness, c.fabric.weft_bending_stiffness},
         c.fabric.areal_mass, symmetry_));
   add_tools();
 }
@@ -36,8 +36,7 @@ NodalState<R> QuarterModel<R>::initial_state() const {
     std::mt19937_64 random(case_.blank.seed);
     // Spelled out, so that every standard library gives the same numbers.
     const auto uniform = [&] {
-      return case_.blank.perturbation *
-             (static_cast<double>(random() >> 11) * 0x1.0p-52 - 1.0);
+      return case_.blank.perturbation * (static_cast<double>(random() >> 11) * 0x1.0p-52 - 1.0);
     };
     for (int n = 0; n < mesh_.node_count; ++n) {
       const Vec3<double> X = mesh_.nodes.get(n);
@@ -76,8 +75,8 @@ void QuarterModel<R>::add_membrane_with(const Cell& cell) {
           cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle));
     case ShearLawKind::tabulated:
       return add_membrane_with(
-          cell, TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)),
-                                  angle));
+          cell,
+          TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)), angle));
   }
 }
 
@@ -88,15 +87,14 @@ void QuarterModel<R>::add_membrane_with(const Cell& cell, const Shear& shear) {
     if (case_.fabric.cell_sweeps == 0)
       return add_membrane_of(WovenMembrane<Cell, Shear, CellPrice::followed>(cell, shear));
   add_membrane_of(WovenMembrane<Cell, Shear>(cell, shear, FibreAngle<R>::right(),
-                                               YarnWidth::corrected,
-                                               SolverControl{case_.fabric.cell_sweeps}));
+                                             YarnWidth::corrected,
+                                             SolverControl{case_.fabric.cell_sweeps}));
 }
 
 template <class R>
 template <class Law>
 void QuarterModel<R>::add_membrane_of(const Law& law) {
-  const MembraneOptions options{case_.blank.hourglass_stiffness,
-                                case_.integration.bulk_viscosity};
+  const MembraneOptions options{case_.blank.hourglass_stiffness, case_.integration.bulk_viscosity};
   if (case_.blank.gauss_points == 1)
     add_block<Quadrilateral<1>>(law, options);
   else
@@ -129,7 +127,7 @@ void QuarterModel<R>::add_tools() {
   const auto surface = [&](double offset, Side side) {
     const DoubleDome<double> exact({}, offset);
     // The tools are flat beyond x = 86 and y = 186 mm.
-    const HeightTableGrid<R> grid{R(0),   R(100), R(0), R(200), R(case_.contact.table_spacing),
+    const HeightTableGrid<R> grid{R(0), R(100), R(0), R(200), R(case_.contact.table_spacing),
                                   true, true};
     return HeightSurface<HeightTable<R>>(HeightTable<R>(exact, grid), side);
   };
@@ -157,11 +155,10 @@ void QuarterModel<R>::add_tools() {
   const double ramp = case_.process.holder_ramp * punch_.duration;
   const double rate = 2 * case_.process.holder_damping_ratio *
                       std::sqrt(case_.contact.penalty * held_area / quarter_mass);
-  add(ring, ToolMotion::free_under(
-                [=, F = case_.process.holder_force / 4](double t) {
-                  return ramp > 0 ? F * std::min(t / ramp, 1.0) : F;
-                },
-                quarter_mass, rate, -half_thickness));
+  add(ring,
+      ToolMotion::free_under([=, F = case_.process.holder_force / 4](
+                                 double t) { return ramp > 0 ? F * std::min(t / ramp, 1.0) : F; },
+                             quarter_mass, rate, -half_thickness));
 }
 
 template class QuarterModel<double>;

@@ -6,8 +6,8 @@
 #include "case.hpp"
 #include "formed_part.hpp"
 
-#include "crossbeam/dynamics/membrane_sweep.hpp"
-#include "crossbeam/dynamics/model.hpp"
+#include "crossbeam/model/model.hpp"
+#include "crossbeam/sweep/membrane_sweep.hpp"
 
 #include <cmath>
 #include <numbers>

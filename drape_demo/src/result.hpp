@@ -60,18 +60,19 @@ struct DrapeResult {
   std::vector<std::array<int, 4>> quads;  ///< node numbers, counter-clockwise, seen from above
   std::vector<Frame> frames;              ///< the last one is the formed part
   std::vector<LedgerRow> ledger;
-  std::vector<ShearPoint> shear_points;                ///< points 1..10
-  std::vector<std::array<double, 2>> outline;          ///< formed free edges, from x = 0 to y = 0
-  double maximum_shear_deg = 0;                        ///< largest element angle
-  std::array<double, 2> maximum_shear_material{};      ///< where it sits on the flat blank [mm]
-  double draw_in_x = 0, draw_in_y = 0;                 ///< on the symmetry axes [mm]
-  std::array<double, 2> corner{};                      ///< formed blank corner [mm]
-  double residual_over_punch_work = 0;                 ///< largest over the run, last punch work
-  double slack_fraction = 0;       ///< area share whose yarn contact is open at the end [-]
+  std::vector<ShearPoint> shear_points;            ///< points 1..10
+  std::vector<std::array<double, 2>> outline;      ///< formed free edges, from x = 0 to y = 0
+  double maximum_shear_deg = 0;                    ///< largest element angle
+  std::array<double, 2> maximum_shear_material{};  ///< where it sits on the flat blank [mm]
+  double draw_in_x = 0, draw_in_y = 0;             ///< on the symmetry axes [mm]
+  std::array<double, 2> corner{};                  ///< formed blank corner [mm]
+  double residual_over_punch_work = 0;             ///< largest over the run, last punch work
+  double slack_fraction = 0;        ///< area share whose yarn contact is open at the end [-]
   double largest_yarn_tension = 0;  ///< at the end [kN/mm]
   double kinetic_over_punch_work_at_95 = 0;  ///< at 95 % of the stroke [-]
   double kinetic_over_internal_at_end = 0;   ///< after the hold [-]
-  std::int64_t cell_fallbacks = 0;  ///< second-order cell: element-steps answered by the energy cell
+  std::int64_t cell_fallbacks =
+      0;  ///< second-order cell: element-steps answered by the energy cell
   WorkCounts work{};
   Cost cost{};
 };

@@ -199,9 +199,8 @@ void check_laws(const FabricInput& fabric, const Locator& where) {
     located({"fabric.shear.coefficients", "integration.precision"},
             [&] { static_cast<void>(PolynomialCurve<R>(real(shear.coefficients))); });
   if (shear.kind == ShearLawKind::tabulated)
-    located({"fabric.shear.angle", "integration.precision"}, [&] {
-      static_cast<void>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)));
-    });
+    located({"fabric.shear.angle", "integration.precision"},
+            [&] { static_cast<void>(TabulatedCurve<R>(real(shear.angle), real(shear.traction))); });
 }
 
 void check_case(const DrapeCase& c, const Locator& where) {

@@ -152,7 +152,9 @@ Json references_json(const References& r) {
 /// What the scene computes, and what it therefore does without (docs/skipping.md).
 Json work_json(const DrapeCase& c, const DrapeResult& result) {
   Json used = Json::array(), skipped = Json::array();
-  const auto sort = [&](bool is_used, const char* what) { (is_used ? used : skipped).push_back(what); };
+  const auto sort = [&](bool is_used, const char* what) {
+    (is_used ? used : skipped).push_back(what);
+  };
   const bool energy_cell = c.fabric.formulation == CellFormulation::energy;
   const bool followed = energy_cell && c.fabric.cell_sweeps == 0;
   sort(true, c.blank.gauss_points == 1 ? "1 Gauss point" : "2x2 Gauss points");

@@ -1,8 +1,9 @@
 #pragma once
 /// @file
 /// Everything but the adapters. The order is the way the data flow: parameters -> cell -> law ->
-/// element -> mesh -> contact -> time step. A header includes its own folder and those before it.
+/// element -> mesh -> model -> sweep, contact -> time step. A header includes its own folder and those before it.
 
+#include "crossbeam/base/counting.hpp"
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/linalg.hpp"
@@ -18,34 +19,47 @@
 #include "crossbeam/cell/second_order.hpp"
 #include "crossbeam/cell/yarn.hpp"
 
+#include "crossbeam/tools/height_surface.hpp"
+#include "crossbeam/tools/height_table.hpp"
+#include "crossbeam/tools/primitives.hpp"
+#include "crossbeam/tools/stadium_ring.hpp"
+#include "crossbeam/tools/surface.hpp"
+
 #include "crossbeam/law/shear.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
 
 #include "crossbeam/element/bending.hpp"
+#include "crossbeam/element/coefficients.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
 #include "crossbeam/element/triangle.hpp"
 
-#include "crossbeam/mesh/batches.hpp"
+#include "crossbeam/mesh/arrays.hpp"
 #include "crossbeam/mesh/levels.hpp"
 #include "crossbeam/mesh/mesh.hpp"
-#include "crossbeam/mesh/nodal_state.hpp"
 #include "crossbeam/mesh/numbering.hpp"
-#include "crossbeam/mesh/tangent_entries.hpp"
 
-#include "crossbeam/contact/double_dome.hpp"
-#include "crossbeam/contact/height_surface.hpp"
-#include "crossbeam/contact/height_table.hpp"
-#include "crossbeam/contact/primitives.hpp"
-#include "crossbeam/contact/stadium_ring.hpp"
-#include "crossbeam/contact/tool_contact.hpp"
+#include "crossbeam/model/first_order_system.hpp"
+#include "crossbeam/model/force_block.hpp"
+#include "crossbeam/model/ledger.hpp"
+#include "crossbeam/model/model.hpp"
+#include "crossbeam/model/nodal_state.hpp"
+#include "crossbeam/model/statics.hpp"
+#include "crossbeam/model/tangent_entries.hpp"
+#include "crossbeam/model/tool_contact.hpp"
+#include "crossbeam/model/tool_motion.hpp"
 
-#include "crossbeam/dynamics/bending_sweep.hpp"
+#include "crossbeam/sweep/bending_sweep.hpp"
+#include "crossbeam/sweep/index_batches.hpp"
+#include "crossbeam/sweep/lane_array.hpp"
+#include "crossbeam/sweep/membrane_sweep.hpp"
+#include "crossbeam/sweep/membrane_tangent.hpp"
+#include "crossbeam/sweep/point_rows.hpp"
+#include "crossbeam/sweep/run_vectors.hpp"
+
+#include "crossbeam/contact/contact_law.hpp"
+#include "crossbeam/contact/rigid_tool_contact.hpp"
+
 #include "crossbeam/dynamics/central_difference.hpp"
-#include "crossbeam/dynamics/first_order_system.hpp"
-#include "crossbeam/dynamics/ledger.hpp"
-#include "crossbeam/dynamics/membrane_sweep.hpp"
-#include "crossbeam/dynamics/model.hpp"
-#include "crossbeam/dynamics/statics.hpp"
 #include "crossbeam/dynamics/step_order.hpp"
 #include "crossbeam/dynamics/thread_team.hpp"

@@ -134,16 +134,16 @@ TEST_CASE("V-BAT-01 the library's own yarns, cells, shear laws and elements pass
     passed(battery);
   }
   for (const int degrees : {60, 90, 120})
-    verify::for_each_shear<double>(degrees, [&]<class Shear>(const std::string& name,
-                                                             const Shear& shear) {
-      // Left out: no modulus; kinks in the traction.
-      if constexpr (!std::is_same_v<Shear, NoShear<double>> &&
-                    !std::is_same_v<Shear, TabulatedShear<double>>) {
-        Battery battery(name);
-        verification::verify_shear(battery, shear, verify::fibre_angle<double>(degrees));
-        passed(battery);
-      }
-    });
+    verify::for_each_shear<double>(
+        degrees, [&]<class Shear>(const std::string& name, const Shear& shear) {
+          // Left out: no modulus; kinks in the traction.
+          if constexpr (!std::is_same_v<Shear, NoShear<double>> &&
+                        !std::is_same_v<Shear, TabulatedShear<double>>) {
+            Battery battery(name);
+            verification::verify_shear(battery, shear, verify::fibre_angle<double>(degrees));
+            passed(battery);
+          }
+        });
   {
     Battery battery("elements");
     verification::verify_element<Triangle>(battery);

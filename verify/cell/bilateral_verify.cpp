@@ -79,7 +79,8 @@ TEST_CASE("V-CELL-18 the bilateral contact is unstable in compression and not un
   }
   verify::claim("V-CELL-18", std::abs(stable / -4.84e-5 - 1), 1e-3,
                 "strain at which the fabric of bilateral cells becomes unstable, against -4.84e-5");
-  CHECK(answer(cell, stable * 2.5, stable * 2.5).forces.F1 == doctest::Approx(-1.64e-3).epsilon(3e-3));
+  CHECK(answer(cell, stable * 2.5, stable * 2.5).forces.F1 ==
+        doctest::Approx(-1.64e-3).epsilon(3e-3));
 
   // The cell itself bifurcates at -2.78 %, and from there says so.
   double says_fine = -0.02, says_unstable = -0.04;
@@ -103,8 +104,8 @@ TEST_CASE("V-CELL-18 the bilateral contact is unstable in compression and not un
   // And a yarn pulled through the mid-plane, in a state that the unilateral cell leaves slack.
   const Answer through = answer(cell, -0.125, 0);
   REQUIRE(converged(through));
-  verify::claim("V-CELL-18", -through.forces.F2, 0.4,
-                "compression of the weft at (-5, 0) % [kN]", verify::Bound::lower);
+  verify::claim("V-CELL-18", -through.forces.F2, 0.4, "compression of the weft at (-5, 0) % [kN]",
+                verify::Bound::lower);
   CHECK(cell.weft().H + through.forces.w2 < 0);
   CHECK(std::abs(answer(unilateral, -0.125, 0).forces.F2) < 1e-12);
 

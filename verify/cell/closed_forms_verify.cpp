@@ -103,7 +103,8 @@ TEST_CASE("V-CELL-07 on a rigid contact balanced tension stretches two frozen tr
   worst.claim("V-CELL-07", 1e-12, "force and height at k3 = 2e15 kN/mm, relative");
 }
 
-TEST_CASE("V-CELL-08 pulled alone, a yarn locks when it is straight and carries its modulus beyond") {
+TEST_CASE(
+    "V-CELL-08 pulled alone, a yarn locks when it is straight and carries its modulus beyond") {
   const Parameters p = verify::table_1_without_bending();
   const Cell cell(p);
   const double L = 2.5, H = 0.4, L3 = 0.8, l0 = chord(L, H), ka = 35.4 / l0;
@@ -135,11 +136,20 @@ TEST_CASE("V-CELL-08 pulled alone, a yarn locks when it is straight and carries 
     weft.y.push_back(100 * u2 / L);
     weft_by_hand.y.push_back(100 * expected / L);
   }
-  verify::show(verify::Plot{"V-CELL-08", "A warp yarn pulled alone: its force", "warp strain [%]",
-                            "warp force [kN]", false, false, {F, F_by_hand},
+  verify::show(verify::Plot{"V-CELL-08",
+                            "A warp yarn pulled alone: its force",
+                            "warp strain [%]",
+                            "warp force [kN]",
+                            false,
+                            false,
+                            {F, F_by_hand},
                             "Nothing until the yarn is straight at 1.27 %, its modulus beyond."});
-  verify::show(verify::Plot{"V-CELL-08", "A warp yarn pulled alone: the free weft",
-                            "warp strain [%]", "weft strain [%]", false, false,
+  verify::show(verify::Plot{"V-CELL-08",
+                            "A warp yarn pulled alone: the free weft",
+                            "warp strain [%]",
+                            "weft strain [%]",
+                            false,
+                            false,
                             {weft, weft_by_hand},
                             "The weft gives its length to the warp (crimp interchange), 3.92 % "
                             "when the warp is straight."});
@@ -176,8 +186,14 @@ TEST_CASE("V-CELL-09 without bending slackness ends on the curve of crimp interc
                "sample", sample);
   }
   REQUIRE(tried > 1000);
-  verify::Map map{"V-CELL-09", "Slack map of the cell without bending", "warp strain [%]",
-                  "weft strain [%]", "contact force q [kN]", {}, {}, {},
+  verify::Map map{"V-CELL-09",
+                  "Slack map of the cell without bending",
+                  "warp strain [%]",
+                  "weft strain [%]",
+                  "contact force q [kN]",
+                  {},
+                  {},
+                  {},
                   "Grey is slack: the yarns do not press on each other. The region ends on the "
                   "curve of crimp interchange, and the force rises from zero on it."};
   const Cell cell(verify::table_1_without_bending());
@@ -191,8 +207,8 @@ TEST_CASE("V-CELL-09 without bending slackness ends on the curve of crimp interc
     }
   }
   verify::show(map);
-  verify::claim("V-CELL-09", wrong, 0, "states on the wrong side of the curve, of " +
-                                           std::to_string(tried));
+  verify::claim("V-CELL-09", wrong, 0,
+                "states on the wrong side of the curve, of " + std::to_string(tried));
   inside.claim("V-CELL-09", 0, "force just inside the slack region [kN]: exactly zero");
 }
 
@@ -282,8 +298,8 @@ TEST_CASE("V-CELL-27 the reading of Table 1: 17.6 mm^2 is the contact area, and 
   // Pinned to the digits that the theory page prints: half a unit of the last one.
   verify::claim("V-CELL-27", std::abs(ours.forces.F1 - 0.33836), 5e-6,
                 "F at 1 % balanced, 17.6 mm^2 as contact area [kN]");
-  verify::claim("V-CELL-27", std::max(std::abs(misprint.forces.F1 - 1.07),
-                                      std::abs(misprint.forces.F2 - 0.53)),
+  verify::claim("V-CELL-27",
+                std::max(std::abs(misprint.forces.F1 - 1.07), std::abs(misprint.forces.F2 - 0.53)),
                 5e-3, "literal A_warp = 17.6 mm^2: a balanced fabric with forces 2:1 [kN]");
   CHECK(ours.forces.F1 == doctest::Approx(ours.forces.F2).epsilon(1e-13));
 
@@ -297,8 +313,8 @@ TEST_CASE("V-CELL-27 the reading of Table 1: 17.6 mm^2 is the contact area, and 
       for (int j = -4; j <= 6; ++j) {
         const Answer a = answer(before, 0.0125 * i, 0.0125 * j);
         const Answer b = answer(after, 0.0125 * i, 0.0125 * j);
-        for (const auto force : {&crossbeam::CellForces<double>::F1,
-                                 &crossbeam::CellForces<double>::F2})
+        for (const auto force :
+             {&crossbeam::CellForces<double>::F1, &crossbeam::CellForces<double>::F2})
           if (a.forces.*force > 0.02)
             worst = std::max(worst, std::abs(b.forces.*force / (a.forces.*force) - 1));
       }
@@ -370,9 +386,10 @@ TEST_CASE("V-CELL-33 yarns with a law of their own: two frozen triangles on a ri
   tangents.claim("V-CELL-33", 1e-11, "balanced stiffness, relative");
   // The bound is that of the law, in the yarn whose law it is.
   const crossbeam::CrossedBeamCell<double> linear(p);
-  verify::claim("V-CELL-33",
-                std::abs(cell.membrane_stiffness_bound() / linear.membrane_stiffness_bound() - 1.25),
-                1e-15, "bound of the stiffness over that of linear yarns, off 1.25");
+  verify::claim(
+      "V-CELL-33",
+      std::abs(cell.membrane_stiffness_bound() / linear.membrane_stiffness_bound() - 1.25), 1e-15,
+      "bound of the stiffness over that of linear yarns, off 1.25");
   // A softer weft carries less than the warp at the same strain.
   const auto unequal = ToeCell(p, law, other).solve(0.02 * L, 0.02 * L);
   REQUIRE(unequal.status == crossbeam::CellStatus::converged);

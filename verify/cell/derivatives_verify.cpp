@@ -47,7 +47,8 @@ long double energy_remainder(const LongCell& cell, const verify::State& s, const
 double force_round_off(const LongCell& cell, const verify::State& s) {
   const double u = std::max(std::abs(s.u1), std::abs(s.u2));
   return static_cast<double>(20 * std::numeric_limits<long double>::epsilon() *
-                             std::max(cell.warp().ka, cell.weft().ka)) * u;
+                             std::max(cell.warp().ka, cell.weft().ka)) *
+         u;
 }
 
 constexpr double margin = 2e-3;  // strain within which the contact does not change
@@ -55,10 +56,10 @@ constexpr double margin = 2e-3;  // strain within which the contact does not cha
 /// Derivatives of a cell at a state from Dual<S, 2> and from the nested Dual<Dual<S, 2>, 2>.
 template <class S>
 struct ByDuals {
-  S F1, F2;                        // dU/du by dual numbers
-  S K11, K12, K21, K22;            // dF/du by dual numbers
-  S H11, H12, H22;                 // d2U/du2 by nested dual numbers
-  S K111, K122, F111, F122;        // dK11/du1, dK12/du2 by dual, d2F1/du1^2, d2F1/du2^2 by nested
+  S F1, F2;                  // dU/du by dual numbers
+  S K11, K12, K21, K22;      // dF/du by dual numbers
+  S H11, H12, H22;           // d2U/du2 by nested dual numbers
+  S K111, K122, F111, F122;  // dK11/du1, dK12/du2 by dual, d2F1/du1^2, d2F1/du2^2 by nested
 
   [[gnu::noinline]] ByDuals(const Cell& cell, const S& u1, const S& u2) {
     using D = Dual<S, 2>;
@@ -94,11 +95,10 @@ double deviation(const Cell& cell, const Answer& closed, double u1, double u2,
   const double F = ka * std::max(std::abs(u1), std::abs(u2));
   const auto& f = closed.forces;
   const auto& K = closed.tangent;
-  return std::max({std::abs(d.F1 - f.F1) / F, std::abs(d.F2 - f.F2) / F,
-                   std::abs(d.K11 - K.K11) / ka, std::abs(d.K12 - K.K12) / ka,
-                   std::abs(d.K21 - K.K12) / ka, std::abs(d.K22 - K.K22) / ka,
-                   std::abs(d.H11 - K.K11) / ka, std::abs(d.H12 - K.K12) / ka,
-                   std::abs(d.H22 - K.K22) / ka});
+  return std::max(
+      {std::abs(d.F1 - f.F1) / F, std::abs(d.F2 - f.F2) / F, std::abs(d.K11 - K.K11) / ka,
+       std::abs(d.K12 - K.K12) / ka, std::abs(d.K21 - K.K12) / ka, std::abs(d.K22 - K.K22) / ka,
+       std::abs(d.H11 - K.K11) / ka, std::abs(d.H12 - K.K12) / ka, std::abs(d.H22 - K.K22) / ka});
 }
 
 }  // namespace
@@ -108,8 +108,13 @@ TEST_SUITE_BEGIN("cell");
 TEST_CASE("V-CELL-03 forces are the energy's gradient and the tangent its second derivative") {
   VERIFY_RANDOM(random, 2003);
   verify::Worst first, second, third, spoiled;
-  verify::Plot plot{"V-CELL-03", "Taylor remainders of the stored energy", "step, as a share of h",
-                    "remainder [kN mm]", true, true, {},
+  verify::Plot plot{"V-CELL-03",
+                    "Taylor remainders of the stored energy",
+                    "step, as a share of h",
+                    "remainder [kN mm]",
+                    true,
+                    true,
+                    {},
                     "A taut state of Table 1: each remainder falls with the power of the first "
                     "term left out, down to round-off; with a force wrong by 1e-3 the slope turns "
                     "from 2 to 1."};
@@ -174,13 +179,13 @@ TEST_CASE("V-CELL-04 the condensed tangent is the forces' derivative on both sid
              r * (moved.forces.F2 - at.forces.F2 - (K.K12 * a + K.K22 * b));
     };
     const double noise = force_round_off(cell, s);
-    const auto result =
-        verify::taylor_test(2, [&](double eps) { return remainder(eps, 1); }, 1, noise);
+    const auto result = verify::taylor_test(
+        2, [&](double eps) { return remainder(eps, 1); }, 1, noise);
     (s.taut ? taut : slack)
         .see(result.deviation, s.taut ? "taut" : "slack", "u =", s.u1, s.u2, result.table);
-    spoiled.see(
-        verify::taylor_test(2, [&](double eps) { return remainder(eps, 1.001); }, 1, noise)
-            .deviation);
+    spoiled.see(verify::taylor_test(
+                    2, [&](double eps) { return remainder(eps, 1.001); }, 1, noise)
+                    .deviation);
   }
   // As in V-CELL-03.
   taut.claim("V-CELL-04", 0.02, "|slope - 2| of the force remainder, contact closed");
@@ -193,8 +198,8 @@ TEST_CASE("V-CELL-05 dual and nested dual numbers agree with the closed forms") 
   VERIFY_RANDOM(random, 2005);
   verify::Worst scalar, lanes, second;
   const auto see = [](verify::Worst& worst, const verify::State& s, double error) {
-    worst.see(error, s.taut ? "taut" : "slack", "u =", s.u1, s.u2, "E2 =",
-              s.parameters.weft.youngs_modulus, "L3 =", s.parameters.contact_length);
+    worst.see(error, s.taut ? "taut" : "slack", "u =", s.u1, s.u2,
+              "E2 =", s.parameters.weft.youngs_modulus, "L3 =", s.parameters.contact_length);
   };
   for (const bool bending : {true, false})
     for (const auto& s : verify::states_on_both_sides(random, 400, 1e-5, bending)) {
@@ -207,8 +212,8 @@ TEST_CASE("V-CELL-05 dual and nested dual numbers agree with the closed forms") 
       // them; second derivatives of the forces do not. They are sums of terms that cancel, each of
       // the size of EA/l0 over a height.
       const double height = std::min(cell.warp().H + at.forces.w1, cell.weft().H + at.forces.w2);
-      const double scale = std::max({std::abs(d.K111), std::abs(d.K122),
-                                     std::max(cell.warp().ka, cell.weft().ka) / height});
+      const double scale = std::max(
+          {std::abs(d.K111), std::abs(d.K122), std::max(cell.warp().ka, cell.weft().ka) / height});
       if (height > 1e-3)
         see(second, s, std::max(std::abs(d.F111 - d.K111), std::abs(d.F122 - d.K122)) / scale);
     }

@@ -52,12 +52,19 @@ double path_error(const Cell& cell, double centre, double amplitude, int steps, 
 
 TEST_SUITE_BEGIN("cell");
 
-TEST_CASE("V-CELL-35 a followed cell has the forces of the equilibrium with second order in the step") {
+TEST_CASE(
+    "V-CELL-35 a followed cell has the forces of the equilibrium with second order in the step") {
   const Cell cell(verify::table_1());
-  verify::Plot plot{"V-CELL-35", "Followed cell along a closed path", "steps around the path",
-                    "largest force error [strain of the yarn]", true, true, {},
-                    "Taut: 0.5 to 1.5 % both ways. Slack: -1.5 to -0.5 %. Across: through slackness "
-                    "and back, where the tangent jumps by a factor 259."};
+  verify::Plot plot{
+      "V-CELL-35",
+      "Followed cell along a closed path",
+      "steps around the path",
+      "largest force error [strain of the yarn]",
+      true,
+      true,
+      {},
+      "Taut: 0.5 to 1.5 % both ways. Slack: -1.5 to -0.5 %. Across: through slackness "
+      "and back, where the tangent jumps by a factor 259."};
   const auto orders = [&](const char* name, double centre, double amplitude, bool want_slack,
                           bool want_taut, double order) {
     verify::Curve curve{name, {}, {}};

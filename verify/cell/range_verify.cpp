@@ -126,8 +126,9 @@ void compare(const crossbeam::CellParameters<R>& p, Counts& counts) {
   counts.incomparable += !comparable;
   counts.residual += p.residual_compression_stiffness > R(0.1) * static_cast<R>(expected.K);
   const double eps = static_cast<double>(Limits::epsilon());
-  counts.off.see(relative(Wide(range.stiffest_yarn) / range.softest_yarn, expected.stiff_over_soft) / eps,
-                 "stiffest over softest yarn");
+  counts.off.see(
+      relative(Wide(range.stiffest_yarn) / range.softest_yarn, expected.stiff_over_soft) / eps,
+      "stiffest over softest yarn");
   counts.off.see(relative(range.total_stiffness, expected.K) / eps, "sum of the stiffnesses");
   counts.off.see(relative(range.largest_elongation(), expected.largest_elongation) / eps,
                  "largest elongation");

@@ -51,7 +51,8 @@ void measure_energy_cell(Errors& worst) {
     worst.forces.see(relative(s.forces.F1, F1, F_scale), name, "F_warp");
     worst.forces.see(relative(s.forces.F2, F2, F_scale), name, "F_weft");
     worst.forces.see(relative(s.forces.q, number<R>(ref["q"]), F_scale), name, "q");
-    const crossbeam::YarnState<R> y1(cell.warp(), u1, s.forces.w1), y2(cell.weft(), u2, s.forces.w2);
+    const crossbeam::YarnState<R> y1(cell.warp(), u1, s.forces.w1),
+        y2(cell.weft(), u2, s.forces.w2);
     worst.forces.see(relative(y1.N, number<R>(ref["N1"]), F_scale), name, "N1");
     worst.forces.see(relative(y2.N, number<R>(ref["N2"]), F_scale), name, "N2");
     // The condensed tangent is a difference of terms of the size of EA/l0.
@@ -135,16 +136,16 @@ TEST_CASE("V-CELL-02 the bilateral cell and the second-order cell reproduce thei
     const double P1 = number<double>(row["F_warp"]), P2 = number<double>(row["F_weft"]);
     // The axial and the geometric part of F cancel: its digits are those of EA/l0 u. This matters
     // in the state 1:-1 %, whose force is 2e-3 of it.
-    const double P_scale =
-        at_rest ? 1 : std::max(std::abs(u1), std::abs(u2)) * parameters.warp.youngs_modulus * parameters.warp.cross_section / parameters.warp.length;
+    const double P_scale = at_rest ? 1
+                                   : std::max(std::abs(u1), std::abs(u2)) *
+                                         parameters.warp.youngs_modulus *
+                                         parameters.warp.cross_section / parameters.warp.length;
     second_order_error.see(std::abs(p.forces.F1 - P1) / P_scale, name, "F_warp");
     second_order_error.see(std::abs(p.forces.F2 - P2) / P_scale, name, "F_weft");
-    second_order_error.see(std::abs(p.forces.w1 - number<double>(row["u3"])) /
-                               parameters.contact_length,
-                           name, "w1");
-    second_order_error.see(std::abs(p.forces.w2 + number<double>(row["u4"])) /
-                               parameters.contact_length,
-                           name, "w2");
+    second_order_error.see(
+        std::abs(p.forces.w1 - number<double>(row["u3"])) / parameters.contact_length, name, "w1");
+    second_order_error.see(
+        std::abs(p.forces.w2 + number<double>(row["u4"])) / parameters.contact_length, name, "w2");
   }
   CHECK(unstable.empty());
   CHECK(other_branch.empty());

@@ -28,7 +28,7 @@ using SecondOrder = crossbeam::SecondOrderCell<double>;
 constexpr double L = 2.5;  // Table 1
 
 [[gnu::noinline]] SecondOrder::Solution<double> solve(const SecondOrder& cell, double strain1,
-                                                       double strain2) {
+                                                      double strain2) {
   return cell.solve(strain1 / 100 * L, strain2 / 100 * L);  // strains in per cent
 }
 
@@ -52,8 +52,7 @@ struct Eq25 {
       const Eigen::Matrix2d K1 = stiffness(cell.warp(), F1), K2 = stiffness(cell.weft(), F2);
       Eigen::Matrix2d K;
       K << K1(1, 1) + k3, k3, k3, K2(1, 1) + k3;
-      const Eigen::Vector2d w =
-          K.inverse() * Eigen::Vector2d(-K1(0, 1) * u1, -K2(0, 1) * u2);
+      const Eigen::Vector2d w = K.inverse() * Eigen::Vector2d(-K1(0, 1) * u1, -K2(0, 1) * u2);
       const bool was = stable;
       stable = K.determinant() > 0 && K.trace() > 0 && w.cwiseAbs().maxCoeff() < L3;
       alike = stable == was ? alike + 1 : 0;
@@ -98,10 +97,10 @@ TEST_CASE("V-CELL-28 to first order the second-order cell and the energy cell ag
     double e1, e2, difference1, difference2, digit;
   };
   const std::vector<Row> table{
-      {1, 1, -0.02, -0.02, 0.01},     {2, 2, -0.04, -0.04, 0.01},  {5, 5, -0.09, -0.09, 0.01},
+      {1, 1, -0.02, -0.02, 0.01},      {2, 2, -0.04, -0.04, 0.01},   {5, 5, -0.09, -0.09, 0.01},
       {0.1, 0.05, -0.17, -0.15, 0.01}, {1, 0.5, -1.07, -0.94, 0.01}, {2, 1, -1.39, -1.28, 0.01},
-      {1, 0, -6.5, -6.5, 0.1},        {2, 0, -8.6, -9.7, 0.1},     {5, 0, -8.5, -15.1, 0.1},
-      {1, -0.5, -25.7, -26.8, 0.1},   {2, -1, -33, -40, 1},        {1, -1, -99, -102, 1}};
+      {1, 0, -6.5, -6.5, 0.1},         {2, 0, -8.6, -9.7, 0.1},      {5, 0, -8.5, -15.1, 0.1},
+      {1, -0.5, -25.7, -26.8, 0.1},    {2, -1, -33, -40, 1},         {1, -1, -99, -102, 1}};
   verify::Worst printed;
   for (const Row& row : table) {
     const auto p = solve(second_order, row.e1, row.e2);
@@ -115,8 +114,13 @@ TEST_CASE("V-CELL-28 to first order the second-order cell and the energy cell ag
   }
   printed.claim("V-CELL-28", 0.51, "the table of P against E-U, in units of its last digit");
 
-  verify::Plot plot{"V-CELL-28", "P against E-U", "warp strain [%]", "warp force [kN]", false,
-                    false, {},
+  verify::Plot plot{"V-CELL-28",
+                    "P against E-U",
+                    "warp strain [%]",
+                    "warp force [kN]",
+                    false,
+                    false,
+                    {},
                     "E-U is the energy cell, P the paper's second-order cell: the same under "
                     "balanced strain, P softer where the weft is held and far too soft where it "
                     "contracts."};
@@ -131,8 +135,7 @@ TEST_CASE("V-CELL-28 to first order the second-order cell and the energy cell ag
     for (int k = 0; k <= 30; ++k) {
       const double strain = 0.1 * k;
       e.x.push_back(strain);
-      e.y.push_back(
-          answer(energy, strain / 100 * L, path.weft * strain / 100 * L).forces.F1);
+      e.y.push_back(answer(energy, strain / 100 * L, path.weft * strain / 100 * L).forces.F1);
       if (k % 2 != 0) continue;
       const auto s = solve(second_order, strain, path.weft * strain);
       REQUIRE(s.status == CellStatus::converged);
@@ -159,7 +162,8 @@ TEST_CASE("V-CELL-16 the second-order cell creates energy around loops: it has n
         const double e1 = from[0] + s * (to[0] - from[0]), e2 = from[1] + s * (to[1] - from[1]);
         const auto p = solve(cell, e1, e2);
         REQUIRE(p.status == CellStatus::converged);
-        work += (p.forces.F1 * (to[0] - from[0]) + p.forces.F2 * (to[1] - from[1])) / 100 * L / panels;
+        work +=
+            (p.forces.F1 * (to[0] - from[0]) + p.forces.F2 * (to[1] - from[1])) / 100 * L / panels;
         peak = std::max(peak, answer(energy, e1 / 100 * L, e2 / 100 * L).energy);
       }
     }
@@ -170,8 +174,9 @@ TEST_CASE("V-CELL-16 the second-order cell creates energy around loops: it has n
   // Pinned negative result: the sign turns with the direction, so one of them creates energy.
   CHECK(forth * back < 0);
   CHECK(std::abs(forth + back) < 1e-9);
-  verify::claim("V-CELL-16", std::abs(std::abs(forth) - 0.045), 0.002,
-                "work of the loop (0,0) (2,0) (2,1) (0,1) % over the peak energy of E-U, less 4.5 %");
+  verify::claim(
+      "V-CELL-16", std::abs(std::abs(forth) - 0.045), 0.002,
+      "work of the loop (0,0) (2,0) (2,1) (0,1) % over the peak energy of E-U, less 4.5 %");
   const double large = std::abs(loop({{0, -1}, {2, -1}, {2, 1}, {0, 1}}));
   verify::claim("V-CELL-16", std::abs(large - 0.25), 0.02,
                 "work of the loop [0, 2] x [-1, 1] % over the peak energy of E-U, less 25 %");
@@ -255,15 +260,17 @@ TEST_CASE("V-CELL-17 where the second-order cell diverges it says so and answers
                            std::abs(s.forces.q - expected.q)}) /
                      std::max(F, K * (std::abs(expected.w1) + std::abs(expected.w2))),
                  sample);
-      forces.see(std::max(std::abs(s.forces.w1 - expected.w1), std::abs(s.forces.w2 - expected.w2)) /
-                     fabric.contact_length,
-                 sample);
+      forces.see(
+          std::max(std::abs(s.forces.w1 - expected.w1), std::abs(s.forces.w2 - expected.w2)) /
+              fabric.contact_length,
+          sample);
     } else {
       if (expected.settled && expected.iterations > 50) {
         const bool is_stable = expected.stable;
         (is_stable ? cycling : unstable)++;
         contradictions += s.status == CellStatus::not_converged && s.iterations != 50;
-        contradictions += s.status != (is_stable ? CellStatus::not_converged : CellStatus::unstable);
+        contradictions +=
+            s.status != (is_stable ? CellStatus::not_converged : CellStatus::unstable);
       } else if (expected.converged && expected.iterations < 20) {
         contradictions += expected.stable;
       }

@@ -38,8 +38,8 @@ struct Bisection {
                               long double h) {
     // g = ka h (1 - l0/l) + kb c0 t, written from the energy and not as the kernel does.
     const long double Lc = y.L + u, l = std::sqrt(Lc * Lc + h * h);
-    const long double l0 = std::sqrt(static_cast<long double>(y.L) * y.L +
-                                     static_cast<long double>(y.H) * y.H);
+    const long double l0 =
+        std::sqrt(static_cast<long double>(y.L) * y.L + static_cast<long double>(y.H) * y.H);
     const long double t = (y.L * (h - y.H) - y.H * u) / l0;
     return y.ka * h * (1 - l0 / l) + y.kb * (y.L / l0) * t;
   }
@@ -48,8 +48,8 @@ struct Bisection {
                             long double q) {
     const auto slope = [&](long double h) {
       const long double Lc = y.L + u, l = std::sqrt(Lc * Lc + h * h);
-      const long double l0 = std::sqrt(static_cast<long double>(y.L) * y.L +
-                                       static_cast<long double>(y.H) * y.H);
+      const long double l0 =
+          std::sqrt(static_cast<long double>(y.L) * y.L + static_cast<long double>(y.H) * y.H);
       return y.ka * (1 - l0 * Lc * Lc / (l * l * l)) + y.kb * (y.L / l0) * (y.L / l0);
     };
     long double low = 0, high = 3 * (static_cast<long double>(y.L) + y.H);
@@ -70,8 +70,7 @@ struct Bisection {
   long double contact_force() const {
     if (closure(0) >= 0) return 0;
     long double low = 0, high = cell.contact_stiffness() * cell.parameters().contact_length;
-    for (int k = 0; k < 100; ++k)
-      (closure((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+    for (int k = 0; k < 100; ++k) (closure((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
     return (low + high) / 2;
   }
 };
@@ -99,10 +98,10 @@ TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine
       sweeps += a.sweeps;
       above_nine += a.sweeps > 9;
       failures += !converged(a);
-      worst_residual.see(verify::violation<long double>(cell, u1, u2, a), "fabric", f, "u =", u1, u2, "I1 =",
-                         cell.parameters().warp.second_moment_of_area, "E2 =",
-                         cell.parameters().weft.youngs_modulus, "L3 =",
-                         cell.parameters().contact_length, "sweeps", a.sweeps);
+      worst_residual.see(verify::violation<long double>(cell, u1, u2, a), "fabric", f, "u =", u1,
+                         u2, "I1 =", cell.parameters().warp.second_moment_of_area,
+                         "E2 =", cell.parameters().weft.youngs_modulus,
+                         "L3 =", cell.parameters().contact_length, "sweeps", a.sweeps);
     }
   }
   std::string table;
@@ -113,12 +112,24 @@ TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine
     bars.x.push_back(k);
     bars.y.push_back(static_cast<double>(histogram[k]));
   }
-  verify::show(verify::Plot{"V-CELL-11", "Sweeps to convergence", "sweeps", "states", false, true,
+  verify::show(verify::Plot{"V-CELL-11",
+                            "Sweeps to convergence",
+                            "sweeps",
+                            "states",
+                            false,
+                            true,
                             {bars},
                             "200000 states of random fabrics, strains -20..10 %: nearly all are "
-                            "done after a handful of sweeps, and the tail dies out.", true});
-  verify::Map map{"V-CELL-11", "Sweeps of Table 1", "warp strain [%]", "weft strain [%]", "sweeps",
-                  {}, {}, {},
+                            "done after a handful of sweeps, and the tail dies out.",
+                            true});
+  verify::Map map{"V-CELL-11",
+                  "Sweeps of Table 1",
+                  "warp strain [%]",
+                  "weft strain [%]",
+                  "sweeps",
+                  {},
+                  {},
+                  {},
                   "Three or four nearly everywhere, six where one yarn is slack and the other "
                   "about to be straight; one at rest."};
   const Cell cell_of_table(verify::table_1());
@@ -178,8 +189,8 @@ TEST_CASE("V-CELL-11 the solver never fails and hardly ever needs more than nine
         }
   }
   verify::claim("V-CELL-11", hardest, 9, "most sweeps of a slack yarn about its straight length");
-  verify::claim("V-CELL-11", static_cast<double>(of_hardest) / static_cast<double>(hard_states), 5.117,
-                "of these states, sweeps on average");
+  verify::claim("V-CELL-11", static_cast<double>(of_hardest) / static_cast<double>(hard_states),
+                5.117, "of these states, sweeps on average");
 }
 
 TEST_CASE("V-CELL-25 there is one equilibrium: nested bisection finds the solver's answer") {
@@ -199,7 +210,8 @@ TEST_CASE("V-CELL-25 there is one equilibrium: nested bisection finds the solver
     (a.closed ? closed : open)++;
     const Bisection exact{cell, u1, u2};
     const long double q = exact.contact_force();
-    const double force = std::max(cell.warp().ka, cell.weft().ka) * cell.parameters().contact_length;
+    const double force =
+        std::max(cell.warp().ka, cell.weft().ka) * cell.parameters().contact_length;
     contact.see(static_cast<double>(std::abs(a.forces.q - q)) / force, "sample", sample);
     const auto see = [&](const crossbeam::YarnConstants<double>& y, double u, double w) {
       const long double h = Bisection::height(y, u, q);
@@ -221,7 +233,8 @@ TEST_CASE("V-CELL-25 there is one equilibrium: nested bisection finds the solver
 TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the printed table") {
   // Reference: the converged answer in long double.
   const Cell cell(verify::table_1());
-  const crossbeam::CrossedBeamCell<long double> exact_cell{crossbeam::CellParameters<long double>{}};
+  const crossbeam::CrossedBeamCell<long double> exact_cell{
+      crossbeam::CellParameters<long double>{}};
   std::array<double, 5> drape{}, wide{};
   for (int i = -200; i <= 100; ++i)
     for (int j = -200; j <= 100; ++j) {
@@ -232,8 +245,8 @@ TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the pri
         const auto s = cell.solve(u1, u2, SolverControl::fixed(n));
         REQUIRE(s.sweeps == n);
         const auto& f = s.forces;
-        const double error = static_cast<double>(std::max(std::abs(f.F1 - exact.F1),
-                                                          std::abs(f.F2 - exact.F2)));
+        const double error =
+            static_cast<double>(std::max(std::abs(f.F1 - exact.F1), std::abs(f.F2 - exact.F2)));
         wide[n] = std::max(wide[n], error);
         if (inside) drape[n] = std::max(drape[n], error);
       }
@@ -243,8 +256,12 @@ TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the pri
   const std::array<double, 5> wide_table{0, 1.7e-3, 9.5e-6, 2.5e-9, 4e-15};
   const std::vector<double> counts{1, 2, 3, 4};
   verify::show(verify::Plot{
-      "V-CELL-12", "Error of a fixed number of sweeps, Table 1", "sweeps",
-      "largest force error [kN]", false, true,
+      "V-CELL-12",
+      "Error of a fixed number of sweeps, Table 1",
+      "sweeps",
+      "largest force error [kN]",
+      false,
+      true,
       {{"strains -2..3 %", counts, {drape.begin() + 1, drape.end()}},
        {"strains -20..10 %", counts, {wide.begin() + 1, wide.end()}}},
       "The right digits double with each sweep until round-off; forces are up to 3 kN."});
@@ -286,8 +303,13 @@ TEST_CASE("V-CELL-12 the errors of a fixed number of sweeps are those of the pri
     verify::claim("V-CELL-12", errors[n].back(), 2 * largest[n],
                   "any fabric, strains -20..10 %, largest, as a strain, " + count);
   }
-  verify::show(verify::Plot{"V-CELL-12", "Error of a fixed number of sweeps, any fabric", "sweeps",
-                            "force error over EA/l0 L [-]", false, true, {most_states, all_states},
+  verify::show(verify::Plot{"V-CELL-12",
+                            "Error of a fixed number of sweeps, any fabric",
+                            "sweeps",
+                            "force error over EA/l0 L [-]",
+                            false,
+                            true,
+                            {most_states, all_states},
                             "40000 states of 10000 random fabrics, strains -20..10 %."});
 }
 
@@ -296,8 +318,9 @@ TEST_CASE("V-CELL-21 input without an answer gets a status, never a hang or a si
   const double inf = std::numeric_limits<double>::infinity();
   const double tiny = std::numeric_limits<double>::denorm_min();
   const std::vector<double> adversaries{
-      0, -0.0, tiny, -tiny, 1e-300, -1e-300, 1e-16, -1e-16, 0.02, -0.02, 2.5, 25, 1e8, 1e150, 1e308,
-      -2.4999999, -2.5, std::nextafter(-2.5, -3), -2.6, -5, -1e8, -1e150, -1e308, nan, inf, -inf};
+      0,     -0.0, tiny, -tiny,  1e-300, -1e-300, 1e-16,      -1e-16, 0.02,
+      -0.02, 2.5,  25,   1e8,    1e150,  1e308,   -2.4999999, -2.5,   std::nextafter(-2.5, -3),
+      -2.6,  -5,   -1e8, -1e150, -1e308, nan,     inf,        -inf};
   long silent = 0, wrong = 0, asked = 0;
   const auto finite = [](const crossbeam::CellForces<double>& f) {
     return std::isfinite(f.F1) && std::isfinite(f.F2) && std::isfinite(f.w1) &&
@@ -363,8 +386,8 @@ TEST_CASE("V-CELL-23 float and long double agree with double to their precision"
   const Parameters fabric = verify::random_fabric(random);
   REQUIRE(fabric.warp.length != fabric.weft.length);
   const auto by_hand = verify::converted<float>(fabric), cast = fabric.cast<float>();
-  for (const auto yarn : {&crossbeam::CellParameters<float>::warp,
-                          &crossbeam::CellParameters<float>::weft}) {
+  for (const auto yarn :
+       {&crossbeam::CellParameters<float>::warp, &crossbeam::CellParameters<float>::weft}) {
     CHECK((cast.*yarn).youngs_modulus == (by_hand.*yarn).youngs_modulus);
     CHECK((cast.*yarn).cross_section == (by_hand.*yarn).cross_section);
     CHECK((cast.*yarn).second_moment_of_area == (by_hand.*yarn).second_moment_of_area);
@@ -384,8 +407,8 @@ TEST_CASE("V-CELL-23 float and long double agree with double to their precision"
     const auto l = answer(in_long, u1, u2);
     float_status.see(converged(f) && converged(d) && converged(l) ? 0 : 1, u1, u2);
     const auto error = [&](const auto& a) {
-      return static_cast<double>(std::max(std::abs(a.forces.F1 - l.forces.F1),
-                                          std::abs(a.forces.F2 - l.forces.F2)));
+      return static_cast<double>(
+          std::max(std::abs(a.forces.F1 - l.forces.F1), std::abs(a.forces.F2 - l.forces.F2)));
     };
     float_force.see(error(f), u1, u2);
     double_force.see(error(d), u1, u2);

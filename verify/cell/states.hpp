@@ -78,7 +78,11 @@ template <class AnyCell>
                                                              typename AnyCell::Real u1,
                                                              typename AnyCell::Real u2) {
   const auto s = cell.solve(u1, u2);
-  return {s.forces, s.status, s.sweeps, s.contact_stiffness > 0, cell.energy(u1, u2, s),
+  return {s.forces,
+          s.status,
+          s.sweeps,
+          s.contact_stiffness > 0,
+          cell.energy(u1, u2, s),
           cell.tangent(u1, u2, s)};
 }
 
@@ -102,7 +106,8 @@ X violation(const crossbeam::CrossedBeamCell<R>& cell, R u1, R u2, const BasicAn
   const X contact = q > X(0) ? magnitude(gap) : maximum(X(-gap), X(0));
   const X below = maximum(X(-(X(cell.warp().H) + w1)), X(-(X(cell.weft().H) + w2))) / L3;
   const X vertical = maximum(magnitude(X(y1.vertical_force(cell.warp()) - q)),
-                             magnitude(X(y2.vertical_force(cell.weft()) - q))) / force;
+                             magnitude(X(y2.vertical_force(cell.weft()) - q))) /
+                     force;
   return maximum(maximum(vertical, contact), maximum(below, X(-q)));
 }
 
@@ -153,8 +158,7 @@ inline std::vector<State> states_on_both_sides(Random& random, int count, double
     const bool want_taut = states.size() % 2 == 0;
     Parameters p = states.size() % 4 < 2 ? table_1() : random_fabric(random);
     for (auto* yarn : {&p.warp, &p.weft})
-      yarn->second_moment_of_area =
-          bending ? std::max(yarn->second_moment_of_area, 1e-6) : 0.0;
+      yarn->second_moment_of_area = bending ? std::max(yarn->second_moment_of_area, 1e-6) : 0.0;
     const Cell cell(p);
     const double u1 = p.warp.length * random.uniform(-0.05, 0.05);
     const double u2 = p.weft.length * random.uniform(-0.05, 0.05);

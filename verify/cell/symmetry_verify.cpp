@@ -102,8 +102,7 @@ TEST_CASE("V-CELL-14 the answer does not depend on the units") {
     decimal.see(deviation(cell, a, si, 1e-3, 1e9), "sample", sample);
     // Powers of two do not: the answers must agree in every bit, so that no absolute number hides
     // in the kernel.
-    const Answer binary =
-        answer(Cell(in_other_units(p, 0x1p-8, 0x1p12)), u1 * 0x1p-8, u2 * 0x1p-8);
+    const Answer binary = answer(Cell(in_other_units(p, 0x1p-8, 0x1p12)), u1 * 0x1p-8, u2 * 0x1p-8);
     bits += binary.forces.F1 != a.forces.F1 * 0x1p-4 || binary.forces.F2 != a.forces.F2 * 0x1p-4 ||
             binary.energy != a.energy * 0x1p-12 || binary.sweeps != a.sweeps ||
             binary.tangent.K12 != a.tangent.K12 * 0x1p4;
@@ -197,8 +196,9 @@ TEST_CASE("V-CELL-26 without bending the energy is convex and taut states are st
     REQUIRE(converged(b));
     REQUIRE(converged(middle));
     // Convex: below its chord. Monotone: no compression anywhere.
-    convexity.see((middle.energy - 0.5 * (a.energy + b.energy)) / (ka * cell.warp().L * cell.warp().L),
-                  "sample", sample);
+    convexity.see(
+        (middle.energy - 0.5 * (a.energy + b.energy)) / (ka * cell.warp().L * cell.warp().L),
+        "sample", sample);
     compression.see(-std::min(a.forces.F1, a.forces.F2) / (ka * cell.warp().L), "sample", sample);
     const auto smallest = [](const crossbeam::CellTangent<double>& K) {
       return (K.K11 + K.K22) / 2 - std::hypot((K.K11 - K.K22) / 2, K.K12);
@@ -257,18 +257,19 @@ TEST_CASE("V-CELL-19 the residual compressive stiffness is an energy of its own"
     const double noise =
         0.02 * static_cast<double>(std::numeric_limits<long double>::epsilon()) * ka * u * u;
     const auto remainder = [&](double eps, bool tangent) {
-      const long double x = static_cast<long double>(eps) * h1, y = static_cast<long double>(eps) * h2;
+      const long double x = static_cast<long double>(eps) * h1,
+                        y = static_cast<long double>(eps) * h2;
       const auto moved = answer(cell, u1 + x, u2 + y);
       long double r = moved.energy - at.energy - at.forces.F1 * x - at.forces.F2 * y;
       if (tangent)
         r -= (at.tangent.K11 * x * x + 2 * at.tangent.K12 * x * y + at.tangent.K22 * y * y) / 2;
       return r;
     };
-    const auto slope_2 =
-        verify::taylor_test(2, [&](double e) { return remainder(e, false); }, 1, noise);
+    const auto slope_2 = verify::taylor_test(
+        2, [&](double e) { return remainder(e, false); }, 1, noise);
     second.see(slope_2.deviation, "sample", sample, slope_2.table);
-    const auto slope_3 =
-        verify::taylor_test(3, [&](double e) { return remainder(e, true); }, 1, noise);
+    const auto slope_3 = verify::taylor_test(
+        3, [&](double e) { return remainder(e, true); }, 1, noise);
     third.see(slope_3.deviation, "sample", sample, slope_3.table);
   }
   // A yarn at its own length is not shortened: the virgin tangent is that of the taut yarn.

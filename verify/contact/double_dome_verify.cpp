@@ -1,8 +1,8 @@
 // The double-dome surface: against the tabulated heights of the fitted tool, against its geometric
 // definition (smoothness, parallel family), and as a Surface.
 
-#include "crossbeam/contact/double_dome.hpp"
-#include "crossbeam/contact/height_surface.hpp"
+#include "crossbeam/tools/height_surface.hpp"
+#include "double_dome.hpp"
 
 #include "contact/closest_point.hpp"
 

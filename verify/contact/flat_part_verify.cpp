@@ -3,10 +3,10 @@
 #include "dynamics/scenes.hpp"
 #include "support/claim.hpp"
 
-#include "crossbeam/contact/double_dome.hpp"
-#include "crossbeam/contact/height_surface.hpp"
-#include "crossbeam/contact/height_table.hpp"
-#include "crossbeam/contact/stadium_ring.hpp"
+#include "crossbeam/tools/height_surface.hpp"
+#include "crossbeam/tools/height_table.hpp"
+#include "crossbeam/tools/stadium_ring.hpp"
+#include "double_dome.hpp"
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,8 @@ using verify::claim;
 using T = NativePack<double>;
 
 HeightSurface<HeightTable<double>> die() {
-  return {HeightTable<double>(DoubleDome<double>{}, {0, 100, 0, 200, 0.5, true, true}), Side::below};
+  return {HeightTable<double>(DoubleDome<double>{}, {0, 100, 0, 200, 0.5, true, true}),
+          Side::below};
 }
 
 /// Points where the tool says it is flat, and the largest difference of gap and normal there.
@@ -85,7 +86,8 @@ TEST_CASE("V-CONT-30 the flat part of a tool answers as the tool does") {
   // A tool without a flat part has none, a plane is one altogether.
   const HeightTable<double> slope([](double x, double) { return std::cos(pi * x / 10); },
                                   {0, 10, 0, 5, 0.5, false, false});
-  const HeightTable<double> plane([](double, double) { return 3.0; }, {0, 10, 0, 5, 0.5, false, false});
+  const HeightTable<double> plane([](double, double) { return 3.0; },
+                                  {0, 10, 0, 5, 0.5, false, false});
   int wrong = 0;
   for (int k = 0; k < 1000; ++k) {
     const double x = random.uniform(0, 9.4), y = random.uniform(0, 5);

@@ -3,11 +3,11 @@
 
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
-#include "crossbeam/contact/double_dome.hpp"
-#include "crossbeam/contact/height_surface.hpp"
-#include "crossbeam/contact/height_table.hpp"
-#include "crossbeam/contact/primitives.hpp"
-#include "crossbeam/contact/stadium_ring.hpp"
+#include "crossbeam/tools/height_surface.hpp"
+#include "crossbeam/tools/height_table.hpp"
+#include "crossbeam/tools/primitives.hpp"
+#include "crossbeam/tools/stadium_ring.hpp"
+#include "double_dome.hpp"
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,8 @@
 // point on an independent parametrisation of the same body.
 
 #include "crossbeam/base/dual.hpp"
-#include "crossbeam/contact/primitives.hpp"
-#include "crossbeam/contact/stadium_ring.hpp"
+#include "crossbeam/tools/primitives.hpp"
+#include "crossbeam/tools/stadium_ring.hpp"
 
 #include "contact/closest_point.hpp"
 

@@ -137,8 +137,13 @@ TEST_CASE(
     line.x.push_back(k / 2.0);
     line.y.push_back(a / 2 * 40 * 40);
   }
-  show(Plot{"V-CONT-21", "Plate on an incline, mu = 0.3", "angle of the incline [deg]",
-            "way down in 40 ms [mm]", false, false, {line, points},
+  show(Plot{"V-CONT-21",
+            "Plate on an incline, mu = 0.3",
+            "angle of the incline [deg]",
+            "way down in 40 ms [mm]",
+            false,
+            false,
+            {line, points},
             "At rest up to 16.7 deg = atan(mu), a thousandth beyond it under way."});
   // At rest, the damped oscillation on the elastic stick has died: rounding of g dt is left.
   holds.claim("V-CONT-21", 1e-12, "speed below the angle of friction [mm/ms]");
@@ -293,8 +298,13 @@ TEST_CASE("V-CONT-23 capstan: tension along a strip on a cylinder grows with exp
     line.x.push_back(theta * 180 / pi);
     line.y.push_back(mu * theta);
   }
-  show(Plot{"V-CONT-23", "Capstan, mu = 0.25", "angle from the held end [deg]",
-            "logarithm of tension over that of the held end [-]", false, false, {line, points},
+  show(Plot{"V-CONT-23",
+            "Capstan, mu = 0.25",
+            "angle from the held end [deg]",
+            "logarithm of tension over that of the held end [-]",
+            false,
+            false,
+            {line, points},
             "A straight line of slope mu: every facet slips at its limit."});
   claim("V-CONT-23", std::abs(ratio / polygon - 1), 5e-3,
         "tension ratio against the polygon's closed form, relative");
@@ -456,7 +466,8 @@ TEST_CASE("V-CONT-27 a tool drags a resting plate along until both move alike") 
   claim("V-CONT-27", std::abs((z1 - z2) / (z2 - z3) - 4), 0.15, "riding: ratio of errors, off 4");
 }
 
-TEST_CASE("V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's law far from rest") {
+TEST_CASE(
+    "V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's law far from rest") {
   // One plate of four nodes on a plane, pressed to a depth and moved by hand.
   constexpr double e = 0.2, kp = 0.05, mu = 0.3, v_s = 0.1;
   const Mesh<4> plate = rectangle(2, 2, 1, 1);
@@ -501,7 +512,8 @@ TEST_CASE("V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's
     force.see(std::abs(answer(d, {}).force.z - expected) / (k * e), "depth", d);
     if (i == 0) continue;
     slope.see(std::abs((answer(d + h, {}).energy - answer(d - h, {}).energy) / (2 * h) -
-                       answer(d, {}).force.z) / (k * e),
+                       answer(d, {}).force.z) /
+                  (k * e),
               "depth", d);
     const double derivative = (answer(d + h, {}).force.z - answer(d - h, {}).force.z) / (2 * h);
     CHECK(derivative <= k * (1 + 1e-9));  // never stiffer than the bound of the step
@@ -510,7 +522,8 @@ TEST_CASE("V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's
   for (double d : {0.0, e})
     for (double h : {1e-3, 1e-4, 1e-5})
       kink.see(std::abs(answer(d + h, {}).force.z - 2 * answer(d, {}).force.z +
-                        (d > h ? answer(d - h, {}).force.z : none)) / (h * h) / (1.5 * k / e),
+                        (d > h ? answer(d - h, {}).force.z : none)) /
+                   (h * h) / (1.5 * k / e),
                "depth", d, "step", h);
   for (double v : {1e-3, 0.1, 0.5, 10.0}) {
     const auto a = answer(0.5, {0.6 * v, -0.8 * v, 0});
@@ -525,7 +538,7 @@ TEST_CASE("V-CONT-29 the smooth contact: a force with two derivatives, Coulomb's
   CHECK(answer(0.01 * e, {0, 0, -1}).force.z < 1e-3 * answer(2 * e, {0, 0, -1}).force.z);
   CHECK(answer(0.5 * e, {0, 0, 100}).force.z == 0);
   force.claim("V-CONT-29", 1e-14, "force against the integral of the stiffness");  // ten roundings
-  slope.claim("V-CONT-29", 1e-6, "force against differences of the energy");  // h^2 / (6 e^2)
+  slope.claim("V-CONT-29", 1e-6, "force against differences of the energy");       // h^2 / (6 e^2)
   kink.claim("V-CONT-29", 1.01, "second differences over the largest curvature");
   friction.claim("V-CONT-29", 1e-14, "friction against v / (v^2 + v_s^2)^(1/2)");
 }

@@ -6,12 +6,12 @@
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/cell/crossed_beam.hpp"
 #include "crossbeam/cell/second_order.hpp"
-#include "crossbeam/contact/stadium_ring.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
 #include "crossbeam/element/triangle.hpp"
 #include "crossbeam/law/shear.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
+#include "crossbeam/tools/stadium_ring.hpp"
 
 #include <algorithm>
 #include <array>

@@ -134,9 +134,15 @@ void show_points(const std::string& id, const DrapeResult& r, const std::string&
     ++p;
   }
   high.name = "";
-  verify::show(verify::Plot{id, "Double dome: shear angles, " + title, "point on the diagonal",
-                            "shear angle [deg]", false, false, {found, middle, low, high},
-                            "One high peak at point 5, a small one at point 8.", false});
+  verify::show(verify::Plot{id,
+                            "Double dome: shear angles, " + title,
+                            "point on the diagonal",
+                            "shear angle [deg]",
+                            false,
+                            false,
+                            {found, middle, low, high},
+                            "One high peak at point 5, a small one at point 8.",
+                            false});
 }
 
 DrapeCase with_study_friction(double element_size, double speed) {
@@ -183,8 +189,8 @@ TEST_CASE("V-DRAPE-01 the realistic case at 2.5 mm and 1 m/s lies in the study's
 // own model all of the study's own numbers have to come out.
 TEST_CASE("V-DRAPE-02 with the study's friction model all its points are met") {
   lies_in_the_bands("V-DRAPE-02", run(with_study_friction(5, 1)));
-  claim("V-DRAPE-02", shear(run(realistic(5, 2)), 2) - shear(run(with_study_friction(5, 2)), 2), 0.15,
-        "deg that the elastic stick adds at point 2", Bound::lower);
+  claim("V-DRAPE-02", shear(run(realistic(5, 2)), 2) - shear(run(with_study_friction(5, 2)), 2),
+        0.15, "deg that the elastic stick adds at point 2", Bound::lower);
 }
 
 TEST_CASE("V-DRAPE-02 with the study's friction model all its points are met at 2.5 mm (long)") {
@@ -238,8 +244,8 @@ void noise_does_not_show(const std::vector<std::uint64_t>& seeds) {
     const DrapeResult noisy = run(c);
     worst = std::max(worst, largest_change(calm, noisy, 8));
     for (std::size_t k = 0; k < calm.frames[0].points.size(); ++k)
-      largest_shift = std::max(
-          largest_shift, std::abs(calm.frames[0].points[k] - noisy.frames[0].points[k]));
+      largest_shift =
+          std::max(largest_shift, std::abs(calm.frames[0].points[k] - noisy.frames[0].points[k]));
   }
   REQUIRE(largest_shift > 1e-10);  // the start really differs
   REQUIRE(largest_shift < 1e-8);
@@ -268,9 +274,9 @@ TEST_CASE("V-DRAPE-05 the energy ledger closes in double and in float, and every
   DrapeCase c = realistic(5, 2);
   const DrapeResult r = run(c);
   const drape::LedgerRow& end = r.ledger.back();
-  for (double term : {end.punch_work, end.yarn, end.shear, end.bending, end.hourglass, end.contact,
-                      end.kinetic, end.friction, end.contact_damping, end.mass_damping,
-                      end.bulk_viscosity})
+  for (double term :
+       {end.punch_work, end.yarn, end.shear, end.bending, end.hourglass, end.contact, end.kinetic,
+        end.friction, end.contact_damping, end.mass_damping, end.bulk_viscosity})
     REQUIRE(term > 0);
   claim("V-DRAPE-05", std::abs(r.residual_over_punch_work), 1e-3,
         "largest residual over punch work, double");
@@ -302,12 +308,13 @@ TEST_CASE("V-DRAPE-12 yarns ten times softer along give the same part with longe
   const DrapeResult stiff = run(c);
   c.integration.axial_scaling = 10;
   const DrapeResult soft = run(c);
-  claim("V-DRAPE-12", static_cast<double>(stiff.cost.steps) / static_cast<double>(soft.cost.steps), 2.5,
-        "steps saved", Bound::lower);
+  claim("V-DRAPE-12", static_cast<double>(stiff.cost.steps) / static_cast<double>(soft.cost.steps),
+        2.5, "steps saved", Bound::lower);
   // The study: 0.06 deg at 1 m/s; 0.05 deg more for the noise of V-DRAPE-04 at 2 m/s.
   claim("V-DRAPE-12", largest_change(stiff, soft, 8), 0.15, "deg, change at points 1 to 8");
-  claim("V-DRAPE-12", std::hypot(stiff.draw_in_x - soft.draw_in_x, stiff.draw_in_y - soft.draw_in_y),
-        0.1, "mm, change of the draw-in");
+  claim("V-DRAPE-12",
+        std::hypot(stiff.draw_in_x - soft.draw_in_x, stiff.draw_in_y - soft.draw_in_y), 0.1,
+        "mm, change of the draw-in");
   claim("V-DRAPE-12", std::abs(soft.residual_over_punch_work), 1e-3,
         "largest residual over punch work");
   DrapeCase fast = realistic(5, 2);
@@ -367,20 +374,21 @@ TEST_CASE("V-DRAPE-13 two threads give the same part, and the counts of work add
 
   // Punch, die and holder ask every pack of nodes in every step; all kinds of answer occur.
   const drape::WorkCounts& work = one.work;
-  const auto lanes = static_cast<std::int64_t>(
-      crossbeam::lanes_v<crossbeam::NativePack<double>>);
+  const auto lanes = static_cast<std::int64_t>(crossbeam::lanes_v<crossbeam::NativePack<double>>);
   const auto nodes = static_cast<std::int64_t>(one.frames.back().points.size() / 3);
   CHECK(work.contact_culled > 0);
   CHECK(work.contact_flat > 0);
   CHECK(work.contact_general > 0);
-  claim("V-DRAPE-13",
-        static_cast<double>(std::abs(work.contact_culled + work.contact_flat + work.contact_general -
-                                     3 * one.cost.steps * ((nodes + lanes - 1) / lanes))),
-        0, "visits of packs that are not counted");
+  claim(
+      "V-DRAPE-13",
+      static_cast<double>(std::abs(work.contact_culled + work.contact_flat + work.contact_general -
+                                   3 * one.cost.steps * ((nodes + lanes - 1) / lanes))),
+      0, "visits of packs that are not counted");
   claim("V-DRAPE-13", static_cast<double>(std::abs(work.gauss_points - one.cost.element_steps)), 0,
         "Gauss points that are not counted");
   claim("V-DRAPE-13",
-        static_cast<double>(std::abs(work.steps_sampled - static_cast<std::int64_t>(one.ledger.size()))),
+        static_cast<double>(
+            std::abs(work.steps_sampled - static_cast<std::int64_t>(one.ledger.size()))),
         0, "sampled steps that are not counted");
   c.contact.culling = false;
   CHECK(run(c).work.contact_culled == 0);

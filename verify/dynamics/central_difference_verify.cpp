@@ -71,8 +71,13 @@ TEST_CASE("V-DYN-01 free flight and constant acceleration are integrated exactly
 TEST_CASE("V-DYN-02 second order in time, without and with damping and viscosity") {
   TautSheet sheet;
   Worst orders;
-  verify::Plot plot{"V-DYN-02", "Convergence in time", "time step [ms]",
-                    "change of positions by halving it [mm]", true, true, {},
+  verify::Plot plot{"V-DYN-02",
+                    "Convergence in time",
+                    "time step [ms]",
+                    "change of positions by halving it [mm]",
+                    true,
+                    true,
+                    {},
                     "Each curve has to fall with the square of the step; damping must not cost the "
                     "order."};
   struct Damping {
@@ -228,18 +233,21 @@ TEST_CASE("V-DYN-04 the ledger closes with order 2, in a conservative run and wi
     for (const auto& block : run.blocks()) block->add_energy(run.state(), start);
     run.start(run.critical_step() / 8);
     std::vector<verify::Curve> terms;
-    for (const char* name : {"kinetic", "yarns", "shear, bending, hourglass",
-                             "contact", "dissipated", "put in", "residual"})
+    for (const char* name : {"kinetic", "yarns", "shear, bending, hourglass", "contact",
+                             "dissipated", "put in", "residual"})
       terms.push_back({name, {}, {}});
     for (int k = 0; k < 800; ++k) {
       EnergyLedger row;
       run.step(k % 5 == 0 ? &row : nullptr);
       if (k % 5 != 0) continue;
       const double values[] = {
-          row.kinetic, row.internal.yarn - start.yarn, row.internal.stored() - row.internal.yarn,
+          row.kinetic,
+          row.internal.yarn - start.yarn,
+          row.internal.stored() - row.internal.yarn,
           row.contact,
           row.friction + row.contact_damping + row.mass_damping + row.internal.bulk_viscosity,
-          row.external + row.initial - start.yarn, row.residual()};
+          row.external + row.initial - start.yarn,
+          row.residual()};
       for (std::size_t t = 0; t < terms.size(); ++t) {
         terms[t].x.push_back(row.time);
         terms[t].y.push_back(values[t]);
@@ -366,8 +374,13 @@ TEST_CASE("V-DYN-05 the critical step: a proven bound, close to the step that bl
     const auto root = [](double w, double c) { return 2 / (c + std::sqrt(c * c + w * w)); };
     return root(1, 2 * b * allowed) / root(allowed, 2 * b * allowed);
   };
-  verify::Plot plot{"V-DYN-05", "Growth at the critical step: one element", "steps",
-                    "largest nodal speed [mm/ms]", false, true, {},
+  verify::Plot plot{"V-DYN-05",
+                    "Growth at the critical step: one element",
+                    "steps",
+                    "largest nodal speed [mm/ms]",
+                    false,
+                    true,
+                    {},
                     "Above its own limit a mode grows exponentially, even by 1e-3; below it never "
                     "does."};
   for (const double factor : {0.95, 0.999, 1.001, 1.01, 1.05}) {
@@ -430,10 +443,10 @@ TEST_CASE("V-DYN-06 runs of the same model agree in every bit, also side by side
   };
   const auto end = [&](double tool_speed = 20) {
     auto run = sheet.run<NativePack<double>>(1, 0.06);
-    run.add(tool<NativePack<double>>(
-        Sphere<double>({20, 20, -30}, 30),
-        ToolMotion::prescribed([=](double t) { return tool_speed * t; }), ContactParameters{},
-        sheet.mesh.node_count));
+    run.add(
+        tool<NativePack<double>>(Sphere<double>({20, 20, -30}, 30),
+                                 ToolMotion::prescribed([=](double t) { return tool_speed * t; }),
+                                 ContactParameters{}, sheet.mesh.node_count));
     run.start(0.9 * run.critical_step());
     for (int k = 0; k < 500; ++k) run.step();
     return End{positions(run), run.tools()[0]->work().tool};

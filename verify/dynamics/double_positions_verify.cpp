@@ -70,9 +70,11 @@ struct Sheet {
     const auto add = [&](auto&& block) { block.add_forces(s, 1.0); };
     const MembraneOptions options{1e-3, 0};
     if (what == Block::membrane)
-      add(MembraneSweep<T, Quadrilateral<1>, decltype(law<R>())>(mesh, law<R>(), areal_mass, options));
+      add(MembraneSweep<T, Quadrilateral<1>, decltype(law<R>())>(mesh, law<R>(), areal_mass,
+                                                                 options));
     else if (what == Block::membrane_2x2)
-      add(MembraneSweep<T, Quadrilateral<4>, decltype(law<R>())>(mesh, law<R>(), areal_mass, options));
+      add(MembraneSweep<T, Quadrilateral<4>, decltype(law<R>())>(mesh, law<R>(), areal_mass,
+                                                                 options));
     else if (what == Block::bending)
       add(BendingSweep<T>(mesh, {1.4e-3, 2e-3}, areal_mass, planes));
     else

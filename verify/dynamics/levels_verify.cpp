@@ -54,13 +54,14 @@ struct Strip {
     for (int n = 0; n < mesh.node_count; ++n) {
       const auto X = mesh.nodes.get(n);
       state.x.set(n, {1.005 * X.x, 1.005 * X.y, 0});
-      state.v.set(n, {0, 0, speed * state.free.z[n] * std::sin(pi * X.x / 140) * std::sin(pi * X.y / 60)});
+      state.v.set(
+          n, {0, 0, speed * state.free.z[n] * std::sin(pi * X.x / 140) * std::sin(pi * X.y / 60)});
     }
     CentralDifference<Lanes> out(std::move(state), areal_mass, 0.02);
     out.add(std::make_unique<MembraneSweep<Lanes, Quadrilateral<1>, Law>>(
         mesh, law, areal_mass, MembraneOptions{1e-4, viscosity}));
-    out.add(std::make_unique<BendingSweep<Lanes>>(mesh, BendingStiffness{1.4e-3, 1.4e-3},
-                                                  areal_mass));
+    out.add(
+        std::make_unique<BendingSweep<Lanes>>(mesh, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
     if (!tools) return out;
     for (const double x : {length / 4, length * 3 / 4})
       out.add(tool<Lanes>(Sphere<double>({x, 30, -60}, 60),
@@ -151,8 +152,9 @@ TEST_CASE("V-DYN-10 levels, bands and any number of threads give the same step")
   REQUIRE(one.viscous > 0);
   REQUIRE(different(one, finish(strip.run(law, 0.0600001), 400, 1)) > 0);  // can fail
   for (const int threads : {2, 3, 4})
-    claim("V-DYN-10", different(one, finish(strip.run(law), 400, threads)), 0,
-          "nodes, works and visits that differ in any bit, " + std::to_string(threads) + " threads");
+    claim(
+        "V-DYN-10", different(one, finish(strip.run(law), 400, threads)), 0,
+        "nodes, works and visits that differ in any bit, " + std::to_string(threads) + " threads");
   // Two tools asked every pack of nodes in each of 401 steps.
   REQUIRE(one.visits.culled > 0);
   REQUIRE(one.visits.general > 0);
@@ -167,7 +169,8 @@ TEST_CASE("V-DYN-10 levels, bands and any number of threads give the same step")
   const End at_once = finish(std::move(whole), 400, 1);
   claim("V-DYN-10", distance(one.x, at_once.x), 1e-10,
         "positions against a step without levels [mm]: 400 steps of roundings of 1e-13");
-  claim("V-DYN-10", std::abs(one.friction / at_once.friction - 1), 1e-8, "work of friction, relative");
+  claim("V-DYN-10", std::abs(one.friction / at_once.friction - 1), 1e-8,
+        "work of friction, relative");
 
   // Elements in any order: one level, gathered, the same motion.
   const Strip shuffled(true);
@@ -225,7 +228,9 @@ TEST_CASE("V-DYN-13 steps in flight together are the same steps") {
     }
     return 0LL;
   };
-  const long long one_by_one = stopped_at([](auto& run) { while (run.steps() < 1000) run.step(); });
+  const long long one_by_one = stopped_at([](auto& run) {
+    while (run.steps() < 1000) run.step();
+  });
   REQUIRE(one_by_one > 5);
   CHECK(stopped_at([](auto& run) { run.advance(1000); }) == one_by_one);
 }
@@ -244,15 +249,16 @@ TEST_CASE("V-DYN-11 a run with followed cells is one with cells in equilibrium, 
   REQUIRE(coarse > 1e-11);  // above rounding
   claim("V-DYN-11", std::log2(coarse / fine) / 2, 1.8, "order of the gap over two halvings",
         verify::Bound::lower);
-  claim("V-DYN-11", coarse, 1e-5, "gap at 0.8 of the critical step [mm], of a motion of millimetres");
+  claim("V-DYN-11", coarse, 1e-5,
+        "gap at 0.8 of the critical step [mm], of a motion of millimetres");
 
   // Methods that evaluate a state more than once have no last step to follow from.
   auto run = strip.run(followed);
   Model<double> model(run.model().state, areal_mass);
   model.add(std::make_unique<MembraneSweep<Lanes, Quadrilateral<1>, Followed>>(
       strip.mesh, followed, areal_mass, MembraneOptions{}));
-  CHECK_THROWS_WITH_AS(model.require_no_memory(),
-                       doctest::Contains("followed from step to step"), InputError);
+  CHECK_THROWS_WITH_AS(model.require_no_memory(), doctest::Contains("followed from step to step"),
+                       InputError);
 }
 
 TEST_SUITE_END();

@@ -126,10 +126,13 @@ TEST_CASE("V-BEND-01 the second difference is exact for every quadratic field") 
   for (const double unit : {1e-2, 1.0, 1e2}) {
     const auto ids = [&](double across, double far_along, double far_across) {
       std::set<int> out;
-      for (const auto& w : three_point_difference(
-               0, {{5, -2 * unit, 0}, {1, -0.5 * unit, across * unit}, {6, -3 * unit, 0},
-                   {7, 2.5 * unit, 0}, {2, 0.4 * unit, 0}, {8, 1.5 * unit, 0},
-                   {9, far_along * unit, far_across * unit}}))
+      for (const auto& w : three_point_difference(0, {{5, -2 * unit, 0},
+                                                      {1, -0.5 * unit, across * unit},
+                                                      {6, -3 * unit, 0},
+                                                      {7, 2.5 * unit, 0},
+                                                      {2, 0.4 * unit, 0},
+                                                      {8, 1.5 * unit, 0},
+                                                      {9, far_along * unit, far_across * unit}}))
         out.insert(w.id);
       return out;
     };
@@ -187,9 +190,9 @@ TEST_CASE("V-BEND-01 the second difference is exact for every quadratic field") 
     (weights.empty() ? refused : given)++;
     for (const auto& weight : weights)
       if (weight.id > 0)
-        least.see(static_cast<double>(
-                      std::abs(weight.weight * radius * radius - w(weight.id - 1)) / sum),
-                  sample);
+        least.see(
+            static_cast<double>(std::abs(weight.weight * radius * radius - w(weight.id - 1)) / sum),
+            sample);
   }
   REQUIRE(given > 1000);
   REQUIRE(refused > 50);
@@ -281,8 +284,13 @@ TEST_CASE("V-BEND-02 cylinder patch: D/(2 R^2) per area, approached with order 2
   // (h/R)^2 times a constant of order 1, with h = 1.25 mm: 1e-3.
   errors.claim("V-BEND-02", 2e-3, "energy per area at R/h = 32, relative");
 
-  verify::Plot plot{"V-BEND-02", "A rolled sheet", "h/R", "error of the energy, relative", true,
-                    true, {},
+  verify::Plot plot{"V-BEND-02",
+                    "A rolled sheet",
+                    "h/R",
+                    "error of the energy, relative",
+                    true,
+                    true,
+                    {},
                     "The bending energy D cos^4/(2 R^2) of each family is approached with order 2, "
                     "whatever the angle between yarns and mesh."};
   const auto over_h = [&](const char* name, double angle, auto corners) {

@@ -11,130 +11,143 @@ namespace manufactured {
 inline std::array<double, 3> position(double X, double Y, double side) {
   using std::numbers::pi;
   return {
-      (51.0/50.0)*X + (1.0/20.0)*std::sin(2*pi*X/side)*std::sin(pi*Y/side),
-      (1.0/100.0)*X + (51.0/50.0)*Y - 1.0/25.0*std::sin(pi*X/side)*std::sin(pi*Y/side),
-      std::sin(pi*X/side)*std::sin(pi*Y/side),
+      (51.0 / 50.0) * X + (1.0 / 20.0) * std::sin(2 * pi * X / side) * std::sin(pi * Y / side),
+      (1.0 / 100.0) * X + (51.0 / 50.0) * Y -
+          1.0 / 25.0 * std::sin(pi * X / side) * std::sin(pi * Y / side),
+      std::sin(pi * X / side) * std::sin(pi * Y / side),
   };
 }
 
 /// -Div P per reference area [kN/mm^2] of the law C/2 (b11^2 + b22^2) + 2 G b12^2 with the
 /// fibres (c1, s1) and (c2, s2).
 inline std::array<double, 3> load(double X, double Y, double side, double C, double G, double c1,
-    double s1, double c2, double s2) {
+                                  double s1, double c2, double s2) {
   using std::numbers::pi;
-  const double F00 = 51.0/50.0 + (1.0/10.0)*pi*std::sin(pi*Y/side)*std::cos(2*pi*X/side)/side;
-  const double F01 = (1.0/20.0)*pi*std::sin(2*pi*X/side)*std::cos(pi*Y/side)/side;
-  const double F10 = 1.0/100.0 - 1.0/25.0*pi*std::sin(pi*Y/side)*std::cos(pi*X/side)/side;
-  const double F11 = 51.0/50.0 - 1.0/25.0*pi*std::sin(pi*X/side)*std::cos(pi*Y/side)/side;
-  const double F20 = pi*std::sin(pi*Y/side)*std::cos(pi*X/side)/side;
-  const double F21 = pi*std::sin(pi*X/side)*std::cos(pi*Y/side)/side;
-  const double D000 = -1.0/5.0*std::pow(pi,
-      2)*std::sin(2*pi*X/side)*std::sin(pi*Y/side)/std::pow(side, 2);
-  const double D001 = (1.0/10.0)*std::pow(pi,
-      2)*std::cos(2*pi*X/side)*std::cos(pi*Y/side)/std::pow(side, 2);
-  const double D011 = -1.0/20.0*std::pow(pi,
-      2)*std::sin(2*pi*X/side)*std::sin(pi*Y/side)/std::pow(side, 2);
-  const double D100 = (1.0/25.0)*std::pow(pi,
-      2)*std::sin(pi*X/side)*std::sin(pi*Y/side)/std::pow(side, 2);
-  const double D101 = -1.0/25.0*std::pow(pi,
-      2)*std::cos(pi*X/side)*std::cos(pi*Y/side)/std::pow(side, 2);
-  const double D111 = (1.0/25.0)*std::pow(pi,
-      2)*std::sin(pi*X/side)*std::sin(pi*Y/side)/std::pow(side, 2);
-  const double D200 = -std::pow(pi, 2)*std::sin(pi*X/side)*std::sin(pi*Y/side)/std::pow(side, 2);
-  const double D201 = std::pow(pi, 2)*std::cos(pi*X/side)*std::cos(pi*Y/side)/std::pow(side, 2);
-  const double D211 = -std::pow(pi, 2)*std::sin(pi*X/side)*std::sin(pi*Y/side)/std::pow(side, 2);
-  const double t0 = 2*c1*s1;
-  const double t1 = F00*c1 + F01*s1;
-  const double t2 = F10*c1 + F11*s1;
-  const double t3 = t1*t2;
-  const double t4 = 2*c2*s2;
-  const double t5 = F00*c2 + F01*s2;
-  const double t6 = F10*c2 + F11*s2;
-  const double t7 = t5*t6;
-  const double t8 = (1.0/2.0)*C;
-  const double t9 = t8*(t0*t3 + t4*t7);
-  const double t10 = s1*t6;
-  const double t11 = s2*t2;
-  const double t12 = (1.0/2.0)*t10 + (1.0/2.0)*t11;
-  const double t13 = c1*t5;
-  const double t14 = c2*t1;
-  const double t15 = 2*G;
-  const double t16 = t15*(t13 + t14);
-  const double t17 = c1*t6;
-  const double t18 = c2*t2;
-  const double t19 = (1.0/2.0)*t17 + (1.0/2.0)*t18;
-  const double t20 = s1*t5;
-  const double t21 = s2*t1;
-  const double t22 = t15*(t20 + t21);
-  const double t23 = F20*c1 + F21*s1;
-  const double t24 = t1*t23;
-  const double t25 = F20*c2 + F21*s2;
-  const double t26 = t25*t5;
-  const double t27 = t8*(t0*t24 + t26*t4);
-  const double t28 = s1*t25;
-  const double t29 = s2*t23;
-  const double t30 = (1.0/2.0)*t28 + (1.0/2.0)*t29;
-  const double t31 = c1*t25;
-  const double t32 = c2*t23;
-  const double t33 = (1.0/2.0)*t31 + (1.0/2.0)*t32;
+  const double F00 = 51.0 / 50.0 + (1.0 / 10.0) * pi * std::sin(pi * Y / side) *
+                                       std::cos(2 * pi * X / side) / side;
+  const double F01 =
+      (1.0 / 20.0) * pi * std::sin(2 * pi * X / side) * std::cos(pi * Y / side) / side;
+  const double F10 =
+      1.0 / 100.0 - 1.0 / 25.0 * pi * std::sin(pi * Y / side) * std::cos(pi * X / side) / side;
+  const double F11 =
+      51.0 / 50.0 - 1.0 / 25.0 * pi * std::sin(pi * X / side) * std::cos(pi * Y / side) / side;
+  const double F20 = pi * std::sin(pi * Y / side) * std::cos(pi * X / side) / side;
+  const double F21 = pi * std::sin(pi * X / side) * std::cos(pi * Y / side) / side;
+  const double D000 = -1.0 / 5.0 * std::pow(pi, 2) * std::sin(2 * pi * X / side) *
+                      std::sin(pi * Y / side) / std::pow(side, 2);
+  const double D001 = (1.0 / 10.0) * std::pow(pi, 2) * std::cos(2 * pi * X / side) *
+                      std::cos(pi * Y / side) / std::pow(side, 2);
+  const double D011 = -1.0 / 20.0 * std::pow(pi, 2) * std::sin(2 * pi * X / side) *
+                      std::sin(pi * Y / side) / std::pow(side, 2);
+  const double D100 = (1.0 / 25.0) * std::pow(pi, 2) * std::sin(pi * X / side) *
+                      std::sin(pi * Y / side) / std::pow(side, 2);
+  const double D101 = -1.0 / 25.0 * std::pow(pi, 2) * std::cos(pi * X / side) *
+                      std::cos(pi * Y / side) / std::pow(side, 2);
+  const double D111 = (1.0 / 25.0) * std::pow(pi, 2) * std::sin(pi * X / side) *
+                      std::sin(pi * Y / side) / std::pow(side, 2);
+  const double D200 =
+      -std::pow(pi, 2) * std::sin(pi * X / side) * std::sin(pi * Y / side) / std::pow(side, 2);
+  const double D201 =
+      std::pow(pi, 2) * std::cos(pi * X / side) * std::cos(pi * Y / side) / std::pow(side, 2);
+  const double D211 =
+      -std::pow(pi, 2) * std::sin(pi * X / side) * std::sin(pi * Y / side) / std::pow(side, 2);
+  const double t0 = 2 * c1 * s1;
+  const double t1 = F00 * c1 + F01 * s1;
+  const double t2 = F10 * c1 + F11 * s1;
+  const double t3 = t1 * t2;
+  const double t4 = 2 * c2 * s2;
+  const double t5 = F00 * c2 + F01 * s2;
+  const double t6 = F10 * c2 + F11 * s2;
+  const double t7 = t5 * t6;
+  const double t8 = (1.0 / 2.0) * C;
+  const double t9 = t8 * (t0 * t3 + t4 * t7);
+  const double t10 = s1 * t6;
+  const double t11 = s2 * t2;
+  const double t12 = (1.0 / 2.0) * t10 + (1.0 / 2.0) * t11;
+  const double t13 = c1 * t5;
+  const double t14 = c2 * t1;
+  const double t15 = 2 * G;
+  const double t16 = t15 * (t13 + t14);
+  const double t17 = c1 * t6;
+  const double t18 = c2 * t2;
+  const double t19 = (1.0 / 2.0) * t17 + (1.0 / 2.0) * t18;
+  const double t20 = s1 * t5;
+  const double t21 = s2 * t1;
+  const double t22 = t15 * (t20 + t21);
+  const double t23 = F20 * c1 + F21 * s1;
+  const double t24 = t1 * t23;
+  const double t25 = F20 * c2 + F21 * s2;
+  const double t26 = t25 * t5;
+  const double t27 = t8 * (t0 * t24 + t26 * t4);
+  const double t28 = s1 * t25;
+  const double t29 = s2 * t23;
+  const double t30 = (1.0 / 2.0) * t28 + (1.0 / 2.0) * t29;
+  const double t31 = c1 * t25;
+  const double t32 = c2 * t23;
+  const double t33 = (1.0 / 2.0) * t31 + (1.0 / 2.0) * t32;
   const double t34 = std::pow(c1, 2);
-  const double t35 = 2*t34;
+  const double t35 = 2 * t34;
   const double t36 = std::pow(c2, 2);
-  const double t37 = 2*t36;
-  const double t38 = t8*(t3*t35 + t37*t7);
+  const double t37 = 2 * t36;
+  const double t38 = t8 * (t3 * t35 + t37 * t7);
   const double t39 = std::pow(s1, 2);
-  const double t40 = 2*t39;
+  const double t40 = 2 * t39;
   const double t41 = std::pow(s2, 2);
-  const double t42 = 2*t41;
-  const double t43 = t8*(t3*t40 + t42*t7);
-  const double t44 = t8*(t24*t35 + t26*t37);
-  const double t45 = t8*(t24*t40 + t26*t42);
-  const double t46 = (1.0/2.0)*t13 + (1.0/2.0)*t14;
-  const double t47 = c1*c2;
-  const double t48 = s1*s2;
-  const double t49 = (1.0/2.0)*t1*t5 + (1.0/2.0)*t2*t6 + (1.0/2.0)*t23*t25 - 1.0/2.0*t47 -
-      1.0/2.0*t48;
-  const double t50 = 4*G*t49;
-  const double t51 = t47*t50;
+  const double t42 = 2 * t41;
+  const double t43 = t8 * (t3 * t40 + t42 * t7);
+  const double t44 = t8 * (t24 * t35 + t26 * t37);
+  const double t45 = t8 * (t24 * t40 + t26 * t42);
+  const double t46 = (1.0 / 2.0) * t13 + (1.0 / 2.0) * t14;
+  const double t47 = c1 * c2;
+  const double t48 = s1 * s2;
+  const double t49 = (1.0 / 2.0) * t1 * t5 + (1.0 / 2.0) * t2 * t6 + (1.0 / 2.0) * t23 * t25 -
+                     1.0 / 2.0 * t47 - 1.0 / 2.0 * t48;
+  const double t50 = 4 * G * t49;
+  const double t51 = t47 * t50;
   const double t52 = std::pow(t1, 2);
   const double t53 = std::pow(t5, 2);
   const double t54 = std::pow(t2, 2);
   const double t55 = std::pow(t23, 2);
-  const double t56 = -1.0/2.0*t34 - 1.0/2.0*t39 + (1.0/2.0)*t52 + (1.0/2.0)*t54 + (1.0/2.0)*t55;
+  const double t56 = -1.0 / 2.0 * t34 - 1.0 / 2.0 * t39 + (1.0 / 2.0) * t52 + (1.0 / 2.0) * t54 +
+                     (1.0 / 2.0) * t55;
   const double t57 = std::pow(t6, 2);
   const double t58 = std::pow(t25, 2);
-  const double t59 = -1.0/2.0*t36 - 1.0/2.0*t41 + (1.0/2.0)*t53 + (1.0/2.0)*t57 + (1.0/2.0)*t58;
-  const double t60 = t35*t56 + t37*t59;
-  const double t61 = (1.0/2.0)*t20 + (1.0/2.0)*t21;
-  const double t62 = t48*t50;
-  const double t63 = t40*t56 + t42*t59;
-  const double t64 = t0*t56 + t4*t59;
-  const double t65 = t15*t49*(c1*s2 + c2*s1);
-  const double t66 = t65 + t8*(t0*t52 + t4*t53 + t64);
-  const double t67 = t15*(t10 + t11);
-  const double t68 = t15*(t17 + t18);
-  const double t69 = t2*t23;
-  const double t70 = t25*t6;
-  const double t71 = t8*(t0*t69 + t4*t70);
-  const double t72 = t8*(t35*t69 + t37*t70);
-  const double t73 = t8*(t40*t69 + t42*t70);
-  const double t74 = t65 + t8*(t0*t54 + t4*t57 + t64);
-  const double t75 = t15*(t28 + t29);
-  const double t76 = t15*(t31 + t32);
-  const double t77 = t65 + t8*(t0*t55 + t4*t58 + t64);
+  const double t59 = -1.0 / 2.0 * t36 - 1.0 / 2.0 * t41 + (1.0 / 2.0) * t53 + (1.0 / 2.0) * t57 +
+                     (1.0 / 2.0) * t58;
+  const double t60 = t35 * t56 + t37 * t59;
+  const double t61 = (1.0 / 2.0) * t20 + (1.0 / 2.0) * t21;
+  const double t62 = t48 * t50;
+  const double t63 = t40 * t56 + t42 * t59;
+  const double t64 = t0 * t56 + t4 * t59;
+  const double t65 = t15 * t49 * (c1 * s2 + c2 * s1);
+  const double t66 = t65 + t8 * (t0 * t52 + t4 * t53 + t64);
+  const double t67 = t15 * (t10 + t11);
+  const double t68 = t15 * (t17 + t18);
+  const double t69 = t2 * t23;
+  const double t70 = t25 * t6;
+  const double t71 = t8 * (t0 * t69 + t4 * t70);
+  const double t72 = t8 * (t35 * t69 + t37 * t70);
+  const double t73 = t8 * (t40 * t69 + t42 * t70);
+  const double t74 = t65 + t8 * (t0 * t54 + t4 * t57 + t64);
+  const double t75 = t15 * (t28 + t29);
+  const double t76 = t15 * (t31 + t32);
+  const double t77 = t65 + t8 * (t0 * t55 + t4 * t58 + t64);
   return {
-      -D000*(t16*t46 + t51 + t8*(t35*t52 + t37*t53 + t60)) - D001*(t16*t61 + t66) - D001*(t22*t46 +
-          t66) - D011*(t22*t61 + t62 + t8*(t40*t52 + t42*t53 + t63)) - D100*(t16*t19 + t38) -
-          D101*(t12*t16 + t9) - D101*(t19*t22 + t9) - D111*(t12*t22 + t43) - D200*(t16*t33 + t44) -
-          D201*(t16*t30 + t27) - D201*(t22*t33 + t27) - D211*(t22*t30 + t45),
-      -D000*(t38 + t46*t68) - D001*(t46*t67 + t9) - D001*(t61*t68 + t9) - D011*(t43 + t61*t67) -
-          D100*(t19*t68 + t51 + t8*(t35*t54 + t37*t57 + t60)) - D101*(t12*t68 + t74) - D101*(t19*t67
-          + t74) - D111*(t12*t67 + t62 + t8*(t40*t54 + t42*t57 + t63)) - D200*(t33*t68 + t72) -
-          D201*(t30*t68 + t71) - D201*(t33*t67 + t71) - D211*(t30*t67 + t73),
-      -D000*(t44 + t46*t76) - D001*(t27 + t46*t75) - D001*(t27 + t61*t76) - D011*(t45 + t61*t75) -
-          D100*(t19*t76 + t72) - D101*(t12*t76 + t71) - D101*(t19*t75 + t71) - D111*(t12*t75 + t73)
-          - D200*(t33*t76 + t51 + t8*(t35*t55 + t37*t58 + t60)) - D201*(t30*t76 + t77) -
-          D201*(t33*t75 + t77) - D211*(t30*t75 + t62 + t8*(t40*t55 + t42*t58 + t63)),
+      -D000 * (t16 * t46 + t51 + t8 * (t35 * t52 + t37 * t53 + t60)) - D001 * (t16 * t61 + t66) -
+          D001 * (t22 * t46 + t66) - D011 * (t22 * t61 + t62 + t8 * (t40 * t52 + t42 * t53 + t63)) -
+          D100 * (t16 * t19 + t38) - D101 * (t12 * t16 + t9) - D101 * (t19 * t22 + t9) -
+          D111 * (t12 * t22 + t43) - D200 * (t16 * t33 + t44) - D201 * (t16 * t30 + t27) -
+          D201 * (t22 * t33 + t27) - D211 * (t22 * t30 + t45),
+      -D000 * (t38 + t46 * t68) - D001 * (t46 * t67 + t9) - D001 * (t61 * t68 + t9) -
+          D011 * (t43 + t61 * t67) - D100 * (t19 * t68 + t51 + t8 * (t35 * t54 + t37 * t57 + t60)) -
+          D101 * (t12 * t68 + t74) - D101 * (t19 * t67 + t74) -
+          D111 * (t12 * t67 + t62 + t8 * (t40 * t54 + t42 * t57 + t63)) - D200 * (t33 * t68 + t72) -
+          D201 * (t30 * t68 + t71) - D201 * (t33 * t67 + t71) - D211 * (t30 * t67 + t73),
+      -D000 * (t44 + t46 * t76) - D001 * (t27 + t46 * t75) - D001 * (t27 + t61 * t76) -
+          D011 * (t45 + t61 * t75) - D100 * (t19 * t76 + t72) - D101 * (t12 * t76 + t71) -
+          D101 * (t19 * t75 + t71) - D111 * (t12 * t75 + t73) -
+          D200 * (t33 * t76 + t51 + t8 * (t35 * t55 + t37 * t58 + t60)) - D201 * (t30 * t76 + t77) -
+          D201 * (t33 * t75 + t77) - D211 * (t30 * t75 + t62 + t8 * (t40 * t55 + t42 * t58 + t63)),
   };
 }
 

@@ -130,7 +130,8 @@ TEST_CASE(
                                                vec3(Q * direction(warp_angle + fibre_angle))};
       const auto at = [](const std::array<Vector3d, 4>& p, double xi, double eta) -> Vector3d {
         return ((1 - xi) * (1 - eta) * p[0] + (1 + xi) * (1 - eta) * p[1] +
-                (1 + xi) * (1 + eta) * p[2] + (1 - xi) * (1 + eta) * p[3]) / 4;
+                (1 + xi) * (1 + eta) * p[2] + (1 - xi) * (1 + eta) * p[3]) /
+               4;
       };
       std::array<Vec3<double>, 4> corners, now;
       for (int a = 0; a < 4; ++a) {
@@ -182,9 +183,9 @@ TEST_CASE(
     for (int p = 0; p < Element::points; ++p) {
       weights.see(std::abs(there[p].weight / here[p].weight - 1), "far away", p);
       for (int k = 0; k < Element::vectors; ++k)
-        fibres.see(std::abs(there[p].t1[k] - here[p].t1[k]) +
-                       std::abs(there[p].t2[k] - here[p].t2[k]),
-                   "far away", p);
+        fibres.see(
+            std::abs(there[p].t1[k] - here[p].t1[k]) + std::abs(there[p].t2[k] - here[p].t2[k]),
+            "far away", p);
     }
   };
   far_away(Quadrilateral<1>{});
@@ -192,7 +193,8 @@ TEST_CASE(
   at_points(Quadrilateral<1>{});
   at_points(Quadrilateral<4>{});
   // Coordinates of 20 mm round to 4e-15 mm, over edges of 3 mm and flat corners.
-  fibres.claim("V-ELEM-01", 1e-13, "fibre vectors at the points of quadrilaterals, non-affine maps");
+  fibres.claim("V-ELEM-01", 1e-13,
+               "fibre vectors at the points of quadrilaterals, non-affine maps");
   weights.claim("V-ELEM-01", 1e-13, "areas of the points of quadrilaterals");
 }
 
@@ -470,8 +472,12 @@ TEST_CASE("V-ELEM-07 fibres at 45 degrees lock an element of 2x2 points and not 
     }
     return energies;
   };
-  verify::Plot plot{"V-ELEM-07", "Tension locking", "element size [mm]",
-                    "yarn energy over shear energy", true, true,
+  verify::Plot plot{"V-ELEM-07",
+                    "Tension locking",
+                    "element size [mm]",
+                    "yarn energy over shear energy",
+                    true,
+                    true,
                     {over_h("2x2 points, 45 deg", FourPointKind{}, pi / 4),
                      over_h("one point, 45 deg", OnePointKind{}, pi / 4),
                      over_h("2x2 points, aligned", FourPointKind{}, 0)},
@@ -588,8 +594,14 @@ double manufactured_error(const Law& law, int n, const Load& load_at) {
 template <class Law, class Load>
 void claim_order(const char* id, const char* title, const Law& law, const Load& load) {
   Worst orders;
-  verify::Plot plot{id, title, "edge of an element [mm]", "distance from the solution [mm]",
-                    true, true, {}, "The error of every element falls along slope 2."};
+  verify::Plot plot{id,
+                    title,
+                    "edge of an element [mm]",
+                    "distance from the solution [mm]",
+                    true,
+                    true,
+                    {},
+                    "The error of every element falls along slope 2."};
   for_each_kind([&](auto kind) {
     using Kind = decltype(kind);
     verify::Curve curve{Kind::name, {}, {}};
@@ -605,8 +617,10 @@ void claim_order(const char* id, const char* title, const Law& law, const Load& 
     plot.curves.push_back(curve);
   });
   const auto& first = plot.curves[0];
-  plot.curves.push_back({"slope 2", {first.x[0], first.x[2]},
-                         {first.y[0] / 2, first.y[0] / 32}, verify::Curve::Style::guide});
+  plot.curves.push_back({"slope 2",
+                         {first.x[0], first.x[2]},
+                         {first.y[0] / 2, first.y[0] / 32},
+                         verify::Curve::Style::guide});
   verify::show(plot);
   // The next term is of relative size (pi h / side)^2 = 0.15 at the coarsest mesh.
   orders.claim(id, 0.15, "distance of the order from 2");
@@ -652,4 +666,3 @@ TEST_CASE("V-ELEM-09 the load that a symbolic program derives is that of the dua
   loads.claim("V-ELEM-09", 1e-13, "load by dual numbers against the symbolic one, relative");
   claim_order("V-ELEM-09", "Manufactured solution, quadratic law, symbolic load", law, derived);
 }
-

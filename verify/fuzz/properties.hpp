@@ -279,9 +279,8 @@ inline Outcome check_cell(std::span<const std::uint8_t> data) {
 template <class Law>
 Outcome check_law(const Law& law, const crossbeam::Matrix2<double>& E, bool shear_hardens) {
   using namespace crossbeam;
-  constexpr bool has_tangent = requires(const Law& l) {
-    l.yarn_energy(l.evaluate(FibreStrain<double>{}));
-  };
+  constexpr bool has_tangent =
+      requires(const Law& l) { l.yarn_energy(l.evaluate(FibreStrain<double>{})); };
   const auto r = membrane_response(law, E, has_tangent ? Tangent::yes : Tangent::no);
   if (r.status != CellStatus::converged) return Outcome::no_answer;
   const auto where = [&] {

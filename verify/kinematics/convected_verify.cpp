@@ -69,9 +69,9 @@ TEST_CASE("V-KIN-01 Eq. 5 turns any skew element base into orthonormal axes") {
   verify::Worst table;
   for (const verify::Json& state : verify::reference_states()) {
     const auto A = verify::reference_base<double>(state, "A1", "A2");
-    const auto Y = crossbeam::cartesian_axes(
-        A, crossbeam::cartesian_from_convected(A, verify::reference_angle<double>(state,
-                                                                                  "alpha_deg")));
+    const auto Y =
+        crossbeam::cartesian_axes(A, crossbeam::cartesian_from_convected(
+                                         A, verify::reference_angle<double>(state, "alpha_deg")));
     const auto reference = verify::reference_base<double>(state, "Y1", "Y2");
     table.see((Y - reference).cwiseAbs().maxCoeff(), state.at("name"));
   }
@@ -115,8 +115,8 @@ TEST_CASE("V-KIN-02 strains follow the lengths of fibres drawn on the element") 
       const double lambda1 = crossbeam::stretch(beta.b11), lambda2 = crossbeam::stretch(beta.b22);
       stretch_error.see(std::abs(lambda1 - f1.norm()), degrees, "deg, sample", sample);
       stretch_error.see(std::abs(lambda2 - f2.norm()), degrees, "deg, sample", sample);
-      strain_error.see(std::abs(beta.b12 - 0.5 * (f1.dot(f2) - F1.dot(F2))), degrees,
-                       "deg, sample", sample);
+      strain_error.see(std::abs(beta.b12 - 0.5 * (f1.dot(f2) - F1.dot(F2))), degrees, "deg, sample",
+                       sample);
       elongation_error.see(
           std::abs(crossbeam::relative_elongation(beta.b11, lambda1) - (f1.norm() - 1)), degrees,
           "deg, sample", sample);
@@ -128,8 +128,7 @@ TEST_CASE("V-KIN-02 strains follow the lengths of fibres drawn on the element") 
       const auto from_increments =
           crossbeam::fibre_strain_from_increment<double>(v1 - V1, v2 - V2, V1, V2);
       const auto from_base_increments = crossbeam::fibre_strain<double>(
-          crossbeam::to_cartesian(
-              crossbeam::convected_strain_from_increment<double>(a - A, A), d),
+          crossbeam::to_cartesian(crossbeam::convected_strain_from_increment<double>(a - A, A), d),
           c);
       for (const auto& other : {from_vectors, from_increments, from_base_increments})
         form_error.see(std::max({std::abs(other.b11 - beta.b11), std::abs(other.b22 - beta.b22),
@@ -152,8 +151,8 @@ TEST_CASE("V-KIN-02 strains follow the lengths of fibres drawn on the element") 
     const double alpha = verify::reference_angle<double>(state, "alpha_deg");
     const double delta = verify::reference_angle<double>(state, "delta_deg");
     const auto d = crossbeam::cartesian_from_convected(A, alpha);
-    const auto E = crossbeam::to_cartesian(
-        crossbeam::convected_strain_from_increment<double>(a - A, A), d);
+    const auto E =
+        crossbeam::to_cartesian(crossbeam::convected_strain_from_increment<double>(a - A, A), d);
     const auto c = crossbeam::fibre_from_cartesian(crossbeam::FibreAngle<double>(delta));
     const auto beta = crossbeam::fibre_strain<double>(E, c);
     const auto E0 = verify::matrix2<double>(state.at("E"));

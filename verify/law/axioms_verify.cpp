@@ -51,7 +51,8 @@ struct Response {
   Response(const Law& law, const Element& e) {
     const auto d = crossbeam::cartesian_from_convected(e.reference, e.alpha);
     E = crossbeam::to_cartesian(
-        crossbeam::convected_strain_from_increment<double>(e.current - e.reference, e.reference), d);
+        crossbeam::convected_strain_from_increment<double>(e.current - e.reference, e.reference),
+        d);
     const auto r = crossbeam::membrane_response(law, E);
     REQUIRE(r.status == crossbeam::CellStatus::converged);
     S = r.S;
@@ -88,13 +89,12 @@ template <class Law>
 Waves scan_waves(const Law& law, int degrees, verify::Random& random, int states) {
   Waves out;
   for (int sample = 0; sample < states; ++sample) {
-    const Matrix2<double> E =
-        verify::strain_of(random.uniform(0.95, 1.05), random.uniform(0.95, 1.05),
-                          random.uniform(-0.8, 0.8), degrees);
+    const Matrix2<double> E = verify::strain_of(
+        random.uniform(0.95, 1.05), random.uniform(0.95, 1.05), random.uniform(-0.8, 0.8), degrees);
     const auto r = crossbeam::membrane_response(law, E, crossbeam::Tangent::yes);
     REQUIRE(r.status == crossbeam::CellStatus::converged);
-    const double stress = (r.S(0, 0) + r.S(1, 1)) / 2 -
-                          std::hypot((r.S(0, 0) - r.S(1, 1)) / 2, r.S(0, 1));
+    const double stress =
+        (r.S(0, 0) + r.S(1, 1)) / 2 - std::hypot((r.S(0, 0) - r.S(1, 1)) / 2, r.S(0, 1));
     const double compression = std::min(stress, 0.0);
     out.softened = std::min(out.softened, compression);
     // F as the Cholesky factor of C = 1 + 2 E, in the plane; space adds the normal.
@@ -231,10 +231,9 @@ TEST_CASE("V-LAW-22 with a shear layer waves soften by the compressive stress al
 TEST_CASE("V-LAW-23 a strain of yarns on one line, and a number that is none, never go unnoticed") {
   // At 90 deg without stretch the yarns' cosine is 2 E12: the last one accepted is 1 - 8 eps, exclusive.
   const double eps = std::numeric_limits<double>::epsilon();
-  const auto law = verify::woven<double>(crossbeam::CellParameters<double>{},
-                                         crossbeam::ConstantShear<double>(
-                                             1e-3, verify::fibre_angle<double>(90)),
-                                         90);
+  const auto law = verify::woven<double>(
+      crossbeam::CellParameters<double>{},
+      crossbeam::ConstantShear<double>(1e-3, verify::fibre_angle<double>(90)), 90);
   const auto status = [&](double cosine) {
     Matrix2<double> E;
     E << 0, cosine / 2, cosine / 2, 0;
@@ -260,8 +259,8 @@ TEST_CASE("V-LAW-23 a strain of yarns on one line, and a number that is none, ne
 
   // Each entry of what is answered is looked at.
   long missed = 0;
-  for (double none : {std::numeric_limits<double>::quiet_NaN(),
-                      std::numeric_limits<double>::infinity()})
+  for (double none :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         Matrix3<double> K = Matrix3<double>::Identity();
@@ -269,7 +268,8 @@ TEST_CASE("V-LAW-23 a strain of yarns on one line, and a number that is none, ne
         K(i, j) = none;
         missed += crossbeam::detail::all_finite(K);
       }
-  verify::claim("V-LAW-23", static_cast<double>(missed), 0, "entries that are no number, unnoticed");
+  verify::claim("V-LAW-23", static_cast<double>(missed), 0,
+                "entries that are no number, unnoticed");
 }
 
 TEST_CASE("V-LAW-17 at rest there is no stress and no energy, and never less energy than at rest") {
@@ -282,8 +282,9 @@ TEST_CASE("V-LAW-17 at rest there is no stress and no energy, and never less ene
       const auto r = crossbeam::membrane_response(law, zero);
       rest.see(largest(r.S) + std::abs(r.energy), name, degrees);
       for (int sample = 0; sample < 200; ++sample)
-        negative.see(-crossbeam::membrane_response(law, verify::random_strain(random, degrees, 0.0))
-                          .energy, name, degrees);
+        negative.see(
+            -crossbeam::membrane_response(law, verify::random_strain(random, degrees, 0.0)).energy,
+            name, degrees);
     });
   // The angle at rest is rounded for oblique fibres: 1e-16 rad times 1e-3 kN/mm.
   rest.claim("V-LAW-17", 1e-18, "stress and energy at rest [kN/mm]");

@@ -68,16 +68,22 @@ TEST_SUITE_BEGIN("law");
 TEST_CASE("V-LAW-03 S is the energy's gradient and dS/dE its Hessian, by rate") {
   VERIFY_RANDOM(random, 3003);
   verify::Worst second, third, spoiled;
-  verify::Plot plot{"V-LAW-03", "", "step, as a share of H", "remainder of W [kN/mm]", true, true,
-                    {}, "S is the derivative of W when the remainder falls with slope 2, dS/dE the "
+  verify::Plot plot{"V-LAW-03",
+                    "",
+                    "step, as a share of H",
+                    "remainder of W [kN/mm]",
+                    true,
+                    true,
+                    {},
+                    "S is the derivative of W when the remainder falls with slope 2, dS/dE the "
                     "second one when it falls with slope 3; with an S12 wrong by 1 % the slope "
                     "turns from 2 to 1."};
   using X = long double;
   for (const int degrees : {60, 90, 120})
     verify::for_each_shear<X>(degrees, [&](const std::string& name, const auto& shear) {
       const auto law = verify::woven(crossbeam::CellParameters<X>{}, shear, degrees);
-      const auto locator = verify::woven(crossbeam::CellParameters<double>{},
-                                         crossbeam::NoShear<double>{}, degrees);
+      const auto locator =
+          verify::woven(crossbeam::CellParameters<double>{}, crossbeam::NoShear<double>{}, degrees);
       for (int sample = 0; sample < 6; ++sample) {
         Matrix2<double> at;
         do {
@@ -92,17 +98,18 @@ TEST_CASE("V-LAW-03 S is the energy's gradient and dS/dE its Hessian, by rate") 
         const Vector3<X> h = crossbeam::strain_to_voigt(H), s = stress_voigt(r.S);
         const auto remainder = [&](double eps, bool tangent, X spoil) {
           const auto moved = response<decltype(law), X>(law, E + X(eps) * H);
-          X rest = moved.energy - r.energy - X(eps) * (s(0) * h(0) + s(1) * h(1) + spoil * s(2) * h(2));
+          X rest =
+              moved.energy - r.energy - X(eps) * (s(0) * h(0) + s(1) * h(1) + spoil * s(2) * h(2));
           if (tangent) rest -= X(eps) * X(eps) / 2 * h.dot(r.dS_dE * h);
           return rest;
         };
         // Roundings of energies EA/l0 strain^2 / A0.
         const double noise = 0.05 * static_cast<double>(std::numeric_limits<X>::epsilon());
-        const auto slope_2 =
-            verify::taylor_test(2, [&](double e) { return remainder(e, false, 1); }, 1, noise);
+        const auto slope_2 = verify::taylor_test(
+            2, [&](double e) { return remainder(e, false, 1); }, 1, noise);
         second.see(slope_2.deviation, name, degrees, "deg, sample", sample, slope_2.table);
-        const auto slope_3 =
-            verify::taylor_test(3, [&](double e) { return remainder(e, true, 1); }, 1, noise);
+        const auto slope_3 = verify::taylor_test(
+            3, [&](double e) { return remainder(e, true, 1); }, 1, noise);
         third.see(slope_3.deviation, name, degrees, "deg, sample", sample, slope_3.table);
         if (std::abs(s(2) * h(2)) > 1e-8) {
           const auto spoilt = [&](double e) { return remainder(e, false, 1.01L); };
@@ -126,8 +133,8 @@ TEST_CASE("V-LAW-03 S is the energy's gradient and dS/dE its Hessian, by rate") 
   second.claim("V-LAW-03", 0.02, "|slope - 2| of W with S, 8 shear layers, 60/90/120 deg");
   // Some states have next to no third derivative, and the fourth bends the slope.
   third.claim("V-LAW-03", 0.3, "|slope - 3| of W with S and dS/dE");
-  verify::claim("V-LAW-03", spoiled.value(), 0.5, "an S12 wrong by 1 % is seen (mutation of the test)",
-                verify::Bound::lower);
+  verify::claim("V-LAW-03", spoiled.value(), 0.5,
+                "an S12 wrong by 1 % is seen (mutation of the test)", verify::Bound::lower);
 }
 
 TEST_CASE("V-LAW-04 dS/dE is the derivative of S, by rate") {
@@ -137,8 +144,8 @@ TEST_CASE("V-LAW-04 dS/dE is the derivative of S, by rate") {
   for (const int degrees : {60, 90, 120})
     verify::for_each_shear<X>(degrees, [&](const std::string& name, const auto& shear) {
       const auto law = verify::woven(crossbeam::CellParameters<X>{}, shear, degrees);
-      const auto locator = verify::woven(crossbeam::CellParameters<double>{},
-                                         crossbeam::NoShear<double>{}, degrees);
+      const auto locator =
+          verify::woven(crossbeam::CellParameters<double>{}, crossbeam::NoShear<double>{}, degrees);
       for (int sample = 0; sample < 6; ++sample) {
         Matrix2<double> at;
         do {
@@ -159,12 +166,12 @@ TEST_CASE("V-LAW-04 dS/dE is the derivative of S, by rate") {
           return probe.dot(dS - spoil * X(eps) * (r.dS_dE * h));
         };
         const double noise = 10 * static_cast<double>(std::numeric_limits<X>::epsilon());
-        const auto slope_2 =
-            verify::taylor_test(2, [&](double e) { return remainder(e, 1); }, 1, noise);
+        const auto slope_2 = verify::taylor_test(
+            2, [&](double e) { return remainder(e, 1); }, 1, noise);
         worst.see(slope_2.deviation, name, degrees, "deg, sample", sample, slope_2.table);
-        spoiled.see(
-            verify::taylor_test(2, [&](double e) { return remainder(e, 1.001L); }, 1, noise)
-                .deviation);
+        spoiled.see(verify::taylor_test(
+                        2, [&](double e) { return remainder(e, 1.001L); }, 1, noise)
+                        .deviation);
       }
     });
   // As in V-LAW-03.
@@ -229,8 +236,8 @@ TEST_CASE("V-LAW-08 the tangent has major symmetry, and loses it with the second
   closed_form.claim("V-LAW-08", 1e-15, "K - K^T, relative to the straight yarn's stiffness");
 
   // The test can fail: the cell without a potential, by differences of its stress.
-  using Law = crossbeam::WovenMembrane<crossbeam::SecondOrderCell<double>,
-                                       crossbeam::NoShear<double>>;
+  using Law =
+      crossbeam::WovenMembrane<crossbeam::SecondOrderCell<double>, crossbeam::NoShear<double>>;
   const Law law(crossbeam::SecondOrderCell<double>(crossbeam::CellParameters<double>{}),
                 crossbeam::NoShear<double>{});
   const auto stress = [&](double e11, double e22) {

@@ -36,9 +36,8 @@ TEST_CASE("V-LAW-24 a followed law has, at the heights of the equilibrium, the s
   const auto check = [&](const std::string& name, const auto& law, int degrees) {
     const double L1 = law.cell().warp().L, L2 = law.cell().weft().L;
     for (int k = 0; k < 60; ++k) {
-      const FibreStrain<double> beta =
-          fibre_strain(verify::random_strain(random, degrees, 1e-3),
-                       fibre_from_cartesian(law.reference()));
+      const FibreStrain<double> beta = fibre_strain(verify::random_strain(random, degrees, 1e-3),
+                                                    fibre_from_cartesian(law.reference()));
       const auto at = law.evaluate(beta);
       const FibreStress<double> exact = law.stress(at);
       double u1, u2, inv1, inv2, m11, m22;
@@ -51,8 +50,8 @@ TEST_CASE("V-LAW-24 a followed law has, at the heights of the equilibrium, the s
       law.follow(u1, u2, inv1, inv2, law.cell().evaluate_yarn(law.cell().warp(), u1, heights.w1),
                  law.cell().evaluate_yarn(law.cell().weft(), u2, heights.w2), heights, m11, m22);
       const FibreStress<double> m = law.with_shear(beta, inv1, inv2, m11, m22);
-      const double error = std::max({std::abs(m.m11 - exact.m11), std::abs(m.m22 - exact.m22),
-                                     std::abs(m.m12 - exact.m12)});
+      const double error = std::max(
+          {std::abs(m.m11 - exact.m11), std::abs(m.m22 - exact.m22), std::abs(m.m12 - exact.m12)});
       stresses.see(error / law.stiffness_bound(), name, degrees, "state", k);
       largest_shear = std::max(largest_shear, std::abs(exact.m12) / law.stiffness_bound());
       least_yarn = std::min(least_yarn, std::abs(exact.m11 - exact.m22) / law.stiffness_bound());
@@ -64,17 +63,19 @@ TEST_CASE("V-LAW-24 a followed law has, at the heights of the equilibrium, the s
     });
     // As many terms as a polynomial may have.
     const std::vector<double> eight{0.05, 0.02, 0.1, -0.1, 0.3, 0.2, -0.1, 0.4};
-    check("polynomial of eight",
-          verify::woven(unequal_fabric(),
-                        verify::polynomial_shear<double>(eight, verify::fibre_angle<double>(degrees)),
-                        degrees),
-          degrees);
+    check(
+        "polynomial of eight",
+        verify::woven(unequal_fabric(),
+                      verify::polynomial_shear<double>(eight, verify::fibre_angle<double>(degrees)),
+                      degrees),
+        degrees);
   }
   REQUIRE(largest_shear > 1e-6);  // far above the tolerance
-  REQUIRE(least_yarn > 0);  // warp and weft are never the same
+  REQUIRE(least_yarn > 0);        // warp and weft are never the same
   // A few roundings each.
   elongations.claim("V-LAW-24", 2e-15, "elongations over the lengths, reciprocal stretches");
-  stresses.claim("V-LAW-24", 1e-16, "stress over the stiffness of the membrane: of strains of 0.03");
+  stresses.claim("V-LAW-24", 1e-16,
+                 "stress over the stiffness of the membrane: of strains of 0.03");
 }
 
 TEST_SUITE_END();

@@ -28,8 +28,8 @@ crossbeam::FibreAngle<double> angle_of(const Json& state) {
   return verify::fibre_angle<double>(std::stoi(state.at("delta_deg").get<std::string>()));
 }
 
-using Membrane = crossbeam::WovenMembrane<crossbeam::CrossedBeamCell<double>,
-                                          crossbeam::ConstantShear<double>>;
+using Membrane =
+    crossbeam::WovenMembrane<crossbeam::CrossedBeamCell<double>, crossbeam::ConstantShear<double>>;
 
 Membrane membrane_of(const Json& state, double G12,
                      crossbeam::YarnWidth width = crossbeam::YarnWidth::corrected) {
@@ -77,14 +77,14 @@ TEST_CASE("V-LAW-01 stress, tangent, energy and Cauchy stress reproduce the refe
     // Cauchy stress, of the yarns and of the sum with the shear layer (Eq. 21, 26, 27).
     const auto A = verify::reference_base<double>(state, "A1", "A2");
     const auto a = verify::reference_base<double>(state, "a1", "a2");
-    const auto d = crossbeam::cartesian_from_convected(
-        A, verify::reference_angle<double>(state, "alpha_deg"));
+    const auto d =
+        crossbeam::cartesian_from_convected(A, verify::reference_angle<double>(state, "alpha_deg"));
     const auto gradient = crossbeam::surface_gradient<double>(a, d);
     const double J = crossbeam::area_ratio(a, A);
     const auto sigma = verify::matrix3<double>(ref.at("sigma"));
-    cauchy.see(largest(crossbeam::cauchy_stress<double>(r.S, gradient, J) - sigma) /
-                   scale(largest(sigma)),
-               name, "yarns");
+    cauchy.see(
+        largest(crossbeam::cauchy_stress<double>(r.S, gradient, J) - sigma) / scale(largest(sigma)),
+        name, "yarns");
     const double G12 = verify::number<double>(state.at("params").at("G12"));
     const auto total = crossbeam::membrane_response(membrane_of(state, G12), E);
     const auto total_S = verify::matrix2<double>(state.at("total").at("S"));
@@ -115,8 +115,8 @@ TEST_CASE("V-LAW-02 Eq. 15 needs the sine of the fibre angle: the literal form i
   for (const Json& state : verify::reference_states()) {
     const std::string name = state.at("name");
     const auto E = verify::matrix2<double>(state.at("E"));
-    const auto r = crossbeam::membrane_response(
-        membrane_of(state, 0, crossbeam::YarnWidth::literal), E);
+    const auto r =
+        crossbeam::membrane_response(membrane_of(state, 0, crossbeam::YarnWidth::literal), E);
     const auto S = verify::matrix2<double>(state.at("EU").at("S_literal_Eq15_no_sin_delta"));
     literal.see(largest(r.S - S) / (largest(S) < 1e-40 ? 1.0 : largest(S)), name);
     const auto corrected = crossbeam::membrane_response(membrane_of(state, 0), E);
@@ -130,11 +130,12 @@ TEST_CASE("V-LAW-02 Eq. 15 needs the sine of the fibre angle: the literal form i
                 "stress missing at 60 deg, less 13.4 %");
 }
 
-TEST_CASE("V-LAW-09 the index placement of Eq. 20 as printed is a trap: c m c^T is not the stress") {
+TEST_CASE(
+    "V-LAW-09 the index placement of Eq. 20 as printed is a trap: c m c^T is not the stress") {
   // Judge: the work of the stress on a strain increment, by central differences of the energy.
   const auto error_of_work = [](int degrees, bool trap) {
-    const auto law = verify::woven(crossbeam::CellParameters<double>{},
-                                   crossbeam::NoShear<double>{}, degrees);
+    const auto law =
+        verify::woven(crossbeam::CellParameters<double>{}, crossbeam::NoShear<double>{}, degrees);
     const Matrix2<double> E = verify::strain_of(1.01, 1.005, 0.1, degrees);
     const auto r = crossbeam::membrane_response(law, E);
     REQUIRE(r.status == crossbeam::CellStatus::converged);
@@ -148,9 +149,10 @@ TEST_CASE("V-LAW-09 the index placement of Eq. 20 as printed is a trap: c m c^T 
       Matrix2<double> H = Matrix2<double>::Zero();
       H(k == 1, k != 0) = H(k != 0, k == 1) = 1;
       constexpr double h = 1e-6;
-      const double slope = (crossbeam::membrane_response<decltype(law), double>(law, E + h * H).energy -
-                            crossbeam::membrane_response<decltype(law), double>(law, E - h * H).energy) /
-                           (2 * h);
+      const double slope =
+          (crossbeam::membrane_response<decltype(law), double>(law, E + h * H).energy -
+           crossbeam::membrane_response<decltype(law), double>(law, E - h * H).energy) /
+          (2 * h);
       worst = std::max(worst, std::abs((S.array() * H.array()).sum() - slope));
     }
     return worst / largest(r.S);
@@ -164,8 +166,8 @@ TEST_CASE("V-LAW-09 the index placement of Eq. 20 as printed is a trap: c m c^T 
 }
 
 TEST_CASE("V-LAW-14 the membrane force does not depend on which Jacobian a host takes") {
-  const auto law = verify::woven(crossbeam::CellParameters<double>{}, crossbeam::NoShear<double>{},
-                                 60);
+  const auto law =
+      verify::woven(crossbeam::CellParameters<double>{}, crossbeam::NoShear<double>{}, 60);
   const Matrix2<double> E = verify::strain_of(1.01, 1.02, 0.2, 60);
   const auto S = crossbeam::membrane_response(law, E).S;
   crossbeam::Base<double> gradient;
@@ -182,15 +184,16 @@ TEST_CASE("V-LAW-14 the membrane force does not depend on which Jacobian a host 
 }
 
 TEST_CASE("V-LAW-18 yarn tensions are force over width, with symmetry and sine") {
-  using Law = crossbeam::WovenMembrane<crossbeam::SecondOrderCell<double>,
-                                       crossbeam::NoShear<double>>;
+  using Law =
+      crossbeam::WovenMembrane<crossbeam::SecondOrderCell<double>, crossbeam::NoShear<double>>;
   crossbeam::CellParameters<double> p;
   p.weft.length = 4;
   p.symmetry = 2;
   verify::Worst worst;
   const int degrees = 60;
   const auto angle = verify::fibre_angle<double>(degrees);
-  const Law second_order(crossbeam::SecondOrderCell<double>(p), crossbeam::NoShear<double>{}, angle);
+  const Law second_order(crossbeam::SecondOrderCell<double>(p), crossbeam::NoShear<double>{},
+                         angle);
   const auto energy = verify::woven(p, crossbeam::NoShear<double>{}, degrees);
   const Matrix2<double> E = verify::strain_of(1.01, 1.005, 0.3, degrees);
   const auto beta = crossbeam::fibre_strain<double>(E, crossbeam::fibre_from_cartesian(angle));
@@ -211,7 +214,8 @@ TEST_CASE("V-LAW-18 yarn tensions are force over width, with symmetry and sine")
   see(energy, "energy cell");
   see(second_order, "second-order cell");
   // A dozen roundings on the way from E to the elongations.
-  worst.claim("V-LAW-18", 1e-14, "P_ii = F_i / (nsym L_j sin delta_bar) and m_ii = P_ii / lambda_i");
+  worst.claim("V-LAW-18", 1e-14,
+              "P_ii = F_i / (nsym L_j sin delta_bar) and m_ii = P_ii / lambda_i");
 }
 
 TEST_SUITE_END();

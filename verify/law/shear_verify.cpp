@@ -51,7 +51,8 @@ double horner(const std::vector<double>& a, double x) {
 
 TEST_SUITE_BEGIN("law");
 
-TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its modulus, odd in gamma") {
+TEST_CASE(
+    "V-LAW-10 the traction of every shear layer is the integral of its modulus, odd in gamma") {
   // Three-point Gauss rules, exact for the quartic modulus and its integral.
   const auto integral = [](const auto& f, double to) {
     const double d = std::sqrt(0.15) * to, middle = 0.5 * to;
@@ -96,8 +97,12 @@ TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its mod
     }
     return curve;
   };
-  verify::Plot plot{"V-LAW-10", "Shear laws", "shear angle gamma [rad]", "shear traction [N/mm]",
-                    false, false,
+  verify::Plot plot{"V-LAW-10",
+                    "Shear laws",
+                    "shear angle gamma [rad]",
+                    "shear traction [N/mm]",
+                    false,
+                    false,
                     {drawn("law A", verify::polynomial_shear<double>(verify::law_A, right)),
                      drawn("law B", verify::polynomial_shear<double>(verify::law_B, right)),
                      drawn("tabulated", verify::tabulated_shear<double>(right))},
@@ -120,8 +125,8 @@ TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its mod
   // the end, at the beginning or between. Scanned by differences of the traction.
   verify::Worst bounds;
   using crossbeam::PolynomialCurve;
-  for (const std::vector<double>& a : {std::vector<double>{1e-3, 2e-3}, {3e-3, -1e-3},
-                                       {1e-3, 0.0, 5e-3, -4e-3}, verify::law_A}) {
+  for (const std::vector<double>& a :
+       {std::vector<double>{1e-3, 2e-3}, {3e-3, -1e-3}, {1e-3, 0.0, 5e-3, -4e-3}, verify::law_A}) {
     const PolynomialCurve<double> curve(a);
     double largest = 0;
     for (int k = 0; k <= 4000; ++k) {
@@ -157,14 +162,17 @@ TEST_CASE("V-LAW-10 the traction of every shear layer is the integral of its mod
 TEST_CASE("V-LAW-11 the two published moduli of the fabric agree at 0.5 rad, 0.186 MPa") {
   const auto modulus = [](const std::vector<double>& in_MPa) {
     return 1e3 * crossbeam::PolynomialCurve<double>([&] {
-             std::vector<double> a;
-             for (const double x : in_MPa) a.push_back(x / 1000);
-             return a;
-           }()).modulus(0.5);
+                   std::vector<double> a;
+                   for (const double x : in_MPa) a.push_back(x / 1000);
+                   return a;
+                 }())
+                     .modulus(0.5);
   };
   // Half a unit of the last printed digit.
-  verify::claim("V-LAW-11", std::abs(modulus(verify::law_A) - 0.186), 5e-4, "law A at 0.5 rad [MPa]");
-  verify::claim("V-LAW-11", std::abs(modulus(verify::law_B) - 0.186), 5e-4, "law B at 0.5 rad [MPa]");
+  verify::claim("V-LAW-11", std::abs(modulus(verify::law_A) - 0.186), 5e-4,
+                "law A at 0.5 rad [MPa]");
+  verify::claim("V-LAW-11", std::abs(modulus(verify::law_B) - 0.186), 5e-4,
+                "law B at 0.5 rad [MPa]");
 }
 
 TEST_CASE("V-LAW-12 shear input that is no elastic law is refused by name") {
@@ -194,8 +202,8 @@ TEST_CASE("V-LAW-12 shear input that is no elastic law is refused by name") {
     must_refuse("shear.modulus", [&] { crossbeam::ConstantShear<double>(modulus, angle); });
   // A modulus that is negative somewhere below 1.2 rad: at zero, in the middle, at the end.
   // The last two are negative at zero alone, and beyond 1.195 rad alone.
-  for (const List& a : {List{-1e-3}, List{0.05, -1, 1}, List{1, 0, -1}, List{-1e-3, 1},
-                        List{1.195, -1}})
+  for (const List& a :
+       {List{-1e-3}, List{0.05, -1, 1}, List{1, 0, -1}, List{-1e-3, 1}, List{1.195, -1}})
     must_refuse("shear.coefficients: G(", [&] { Polynomial{a}; });
   must_refuse("shear.coefficients", [&] { Polynomial{List{}}; });
   must_refuse("shear.coefficients", [&] { Polynomial{List(9, 1.0)}; });
@@ -246,8 +254,8 @@ TEST_CASE("V-LAW-13 nested dual numbers of the shear energy give its gradient an
         const DD W = shear.energy(
             fibre_state(variable(beta.b11, 0), variable(beta.b22, 1), variable(beta.b12, 2)));
         const double closed_g[3] = {g.g1, g.g2, g.g3};
-        const double closed_h[3][3] = {{h.h11, h.h12, h.h13}, {h.h12, h.h22, h.h23},
-                                       {h.h13, h.h23, h.h33}};
+        const double closed_h[3][3] = {
+            {h.h11, h.h12, h.h13}, {h.h12, h.h22, h.h23}, {h.h13, h.h23, h.h33}};
         // Moduli of 1e-4 kN/mm times the geometry's factors of up to 1/sin^3(20 deg) = 25.
         constexpr double scale = 1e-3;
         for (int i = 0; i < 3; ++i) {
@@ -263,7 +271,8 @@ TEST_CASE("V-LAW-13 nested dual numbers of the shear energy give its gradient an
   hessian.claim("V-LAW-13", 1e-12, "Hessian, relative to 1e-3 kN/mm");
 }
 
-TEST_CASE("V-LAW-15 measures and frames of Eq. 26: a factor of two, and a difference when oblique") {
+TEST_CASE(
+    "V-LAW-15 measures and frames of Eq. 26: a factor of two, and a difference when oblique") {
   using namespace crossbeam;
   const double G = 0.001;
   verify::Worst factor, frames, tensor;
@@ -301,7 +310,8 @@ TEST_CASE("V-LAW-15 measures and frames of Eq. 26: a factor of two, and a differ
   const ConstantShear<double> fibre(G, angle, ShearMeasure::tensor, ShearFrame::fibre);
   CHECK(fibre.energy(stretched) == 0);
   verify::claim("V-LAW-15", std::abs(cartesian.gradient(stretched).g3) / (G * 0.01), 0.5,
-                "spurious shear of a warp stretch at 60 deg, Cartesian frame", verify::Bound::lower);
+                "spurious shear of a warp stretch at 60 deg, Cartesian frame",
+                verify::Bound::lower);
 }
 
 namespace {
@@ -312,8 +322,8 @@ int lanes_that_differ(verify::Random& random, const Shear& shear, int degrees) {
   using P = crossbeam::Pack<S, N>;
   using Cell = crossbeam::CrossedBeamCell<S>;
   const auto angle = verify::fibre_angle<S>(degrees);
-  const crossbeam::WovenMembrane<Cell, Shear> law(Cell(crossbeam::CellParameters<S>{}), shear, angle,
-                                                  crossbeam::YarnWidth::corrected,
+  const crossbeam::WovenMembrane<Cell, Shear> law(Cell(crossbeam::CellParameters<S>{}), shear,
+                                                  angle, crossbeam::YarnWidth::corrected,
                                                   crossbeam::SolverControl::fixed(3));
   const auto c = crossbeam::fibre_from_cartesian(verify::fibre_angle<double>(degrees));
   int different = 0;
@@ -359,7 +369,8 @@ TEST_CASE("V-LAW-19 the law answers in every lane as for the scalar, and in floa
     });
   }
   // The same correctly rounded operations in the same order.
-  verify::claim("V-LAW-19", different, 0, "lanes that differ in any bit of stress, energy, Hessian");
+  verify::claim("V-LAW-19", different, 0,
+                "lanes that differ in any bit of stress, energy, Hessian");
 
   verify::Worst single;
   for (const int degrees : {60, 90, 120}) {
@@ -374,8 +385,8 @@ TEST_CASE("V-LAW-19 the law answers in every lane as for the scalar, and in floa
     for (int sample = 0; sample < 500; ++sample) {
       const auto E = verify::random_strain(random, degrees, 0.01);
       const auto d = crossbeam::membrane_response(in_double, E);
-      const auto f = crossbeam::membrane_response<decltype(in_float), float>(in_float,
-                                                                             E.cast<float>());
+      const auto f =
+          crossbeam::membrane_response<decltype(in_float), float>(in_float, E.cast<float>());
       single.see(static_cast<double>((f.S.cast<double>() - d.S).cwiseAbs().maxCoeff()), degrees,
                  "deg, sample", sample);
     }

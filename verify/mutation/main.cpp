@@ -99,7 +99,8 @@ int main(int count, char** arguments) {
   coverage = std::getenv("CROSSBEAM_MUTATION_COVERAGE") != nullptr;
   if (const char* mutant = std::getenv("CROSSBEAM_MUTANT")) {
     int site = 0;
-    if (std::sscanf(mutant, "%d:%d", &site, &active_variant) != 2 || site < 0 || site >= most_sites) {
+    if (std::sscanf(mutant, "%d:%d", &site, &active_variant) != 2 || site < 0 ||
+        site >= most_sites) {
       std::fprintf(stderr, "CROSSBEAM_MUTANT = %s is not <site>:<variant>\n", mutant);
       return 2;
     }

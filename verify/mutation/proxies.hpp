@@ -44,7 +44,9 @@ using plain_t = decltype(plain(std::declval<X>()));
 
 template <class V>
 bool differs(const V& a, const V& b) {
-  if constexpr (requires { { a == b } -> std::same_as<bool>; })
+  if constexpr (requires {
+                  { a == b } -> std::same_as<bool>;
+                })
     return !(a == b);
   else
     return true;  // lanes, matrices: not looked into
@@ -54,8 +56,9 @@ bool differs(const V& a, const V& b) {
 template <class V, class X>
 inline constexpr bool same_kind =
     !requires(V v) { v.c_str(); } &&
-    (std::is_same_v<V, X> || (std::is_arithmetic_v<X> && !requires(V v) { v.rows(); } &&
-                             !requires(V v) { v.x; } && std::is_convertible_v<X, V>));
+    (std::is_same_v<V, X> || (
+                                 std::is_arithmetic_v<X> && !requires(V v) { v.rows(); } &&
+                                 !requires(V v) { v.x; } && std::is_convertible_v<X, V>));
 
 template <class V, class X>
 V mutant(const V& original, const X& x) {
@@ -86,37 +89,36 @@ struct Half {
 /// A proxy for the binary operator `op`: variant 1 is `first`, variant 2 is `second`, expressions in
 /// l, r and the original value v.
 #define CROSSBEAM_MUTATION(Name, op, first, second)                                               \
-  struct Name {                                                                                  \
-    int site;                                                                                    \
-    template <class V, class L, class R>                                                         \
-    [[gnu::noinline, gnu::cold]] static V changed(int which, V v, L l, R r) {                    \
-      if (which == 1) {                                                                          \
-        if constexpr (requires { first; })                                                       \
-          return first;                                                                          \
-      } else {                                                                                   \
-        if constexpr (requires { second; })                                                      \
-          return second;                                                                         \
-      }                                                                                          \
-      not_applicable();                                                                          \
-      return v;                                                                                  \
-    }                                                                                            \
-    template <class L>                                                                           \
-    CROSSBEAM_PROXY friend Half<Name, L> operator op(const L& l, Name proxy) {                  \
-      return {l, proxy.site};                                                                    \
-    }                                                                                            \
-  };                                                                                             \
-  template <class L, class R>                                                                    \
-  CROSSBEAM_PROXY auto operator op(Half<Name, L>&& half, const R& r) {                          \
-    auto v = plain(half.l op r);                                                                 \
-    if (const int which = variant(half.site))                                                    \
-      return Name::template changed<decltype(v), std::decay_t<const L&>, std::decay_t<const R&>>(which, v, half.l, r);                     \
-    return v;                                                                                    \
+  struct Name {                                                                                   \
+    int site;                                                                                     \
+    template <class V, class L, class R>                                                          \
+    [[gnu::noinline, gnu::cold]] static V changed(int which, V v, L l, R r) {                     \
+      if (which == 1) {                                                                           \
+        if constexpr (requires { first; }) return first;                                          \
+      } else {                                                                                    \
+        if constexpr (requires { second; }) return second;                                        \
+      }                                                                                           \
+      not_applicable();                                                                           \
+      return v;                                                                                   \
+    }                                                                                             \
+    template <class L>                                                                            \
+    CROSSBEAM_PROXY friend Half<Name, L> operator op(const L& l, Name proxy) {                    \
+      return {l, proxy.site};                                                                     \
+    }                                                                                             \
+  };                                                                                              \
+  template <class L, class R>                                                                     \
+  CROSSBEAM_PROXY auto operator op(Half<Name, L>&& half, const R& r) {                            \
+    auto v = plain(half.l op r);                                                                  \
+    if (const int which = variant(half.site))                                                     \
+      return Name::template changed<decltype(v), std::decay_t<const L&>, std::decay_t<const R&>>( \
+          which, v, half.l, r);                                                                   \
+    return v;                                                                                     \
   }
 
 CROSSBEAM_MUTATION(Add, +, mutant(v, l - r), dropped(v, l, r))
 CROSSBEAM_MUTATION(Sub, -, mutant(v, l + r), dropped(v, l, r))
 CROSSBEAM_MUTATION(Mul, *, mutant(v, l / r), dropped(v, l, r))
-CROSSBEAM_MUTATION(Div, /, mutant(v, l * r), dropped(v, l, r))
+CROSSBEAM_MUTATION(Div, /, mutant(v, l* r), dropped(v, l, r))
 CROSSBEAM_MUTATION(Less, <, mutant(v, l <= r), mutant(v, l >= r))
 CROSSBEAM_MUTATION(LessEqual, <=, mutant(v, l < r), mutant(v, l > r))
 CROSSBEAM_MUTATION(Greater, >, mutant(v, l >= r), mutant(v, l <= r))
@@ -124,7 +126,7 @@ CROSSBEAM_MUTATION(GreaterEqual, >=, mutant(v, l > r), mutant(v, l < r))
 CROSSBEAM_MUTATION(Equal, ==, mutant(v, l != r), mutant(v, l != r))
 CROSSBEAM_MUTATION(NotEqual, !=, mutant(v, l == r), mutant(v, l == r))
 CROSSBEAM_MUTATION(And, &&, mutant(v, l || r), mutant(v, l))
-CROSSBEAM_MUTATION(Or, ||, mutant(v, l && r), mutant(v, l))
+CROSSBEAM_MUTATION(Or, ||, mutant(v, l&& r), mutant(v, l))
 // In the head of a for loop: one turn less, and none. (One more would read beyond arrays.)
 CROSSBEAM_MUTATION(LoopLess, <, mutant(v, l + 1 < r), mutant(v, false))
 CROSSBEAM_MUTATION(LoopLessEqual, <=, mutant(v, l < r), mutant(v, false))
@@ -211,20 +213,20 @@ CROSSBEAM_PROXY decltype(auto) twin(int site, X& x, [[maybe_unused]] Y& y) {
 }
 
 /// Functions: `maximum(a, b)` becomes `Maximum{7}(a, b)`.
-#define CROSSBEAM_MUTATION(Name, as_written, changed)                                             \
-  struct Name {                                                                                  \
-    int site;                                                                                    \
-    template <class A, class... B>                                                               \
-    CROSSBEAM_PROXY auto operator()(const A& a, const B&... b) const {                          \
-      using namespace std_and_crossbeam;                                                         \
-      auto v = plain(as_written(a, b...));                                                       \
-      if (variant(site)) {                                                                       \
-        if constexpr (requires { changed(a, b...); })                                            \
-          return changed_to<decltype(v), decltype(v)>(v, decltype(v)(changed(a, b...)));         \
-        not_applicable();                                                                        \
-      }                                                                                          \
-      return v;                                                                                  \
-    }                                                                                            \
+#define CROSSBEAM_MUTATION(Name, as_written, changed)                                    \
+  struct Name {                                                                          \
+    int site;                                                                            \
+    template <class A, class... B>                                                       \
+    CROSSBEAM_PROXY auto operator()(const A& a, const B&... b) const {                   \
+      using namespace std_and_crossbeam;                                                 \
+      auto v = plain(as_written(a, b...));                                               \
+      if (variant(site)) {                                                               \
+        if constexpr (requires { changed(a, b...); })                                    \
+          return changed_to<decltype(v), decltype(v)>(v, decltype(v)(changed(a, b...))); \
+        not_applicable();                                                                \
+      }                                                                                  \
+      return v;                                                                          \
+    }                                                                                    \
   };
 namespace std_and_crossbeam {
 using crossbeam::all;

@@ -5,12 +5,12 @@
 
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/cell/crossed_beam.hpp"
-#include "crossbeam/contact/height_surface.hpp"
-#include "crossbeam/contact/height_table.hpp"
-#include "crossbeam/contact/stadium_ring.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
+#include "crossbeam/tools/height_surface.hpp"
+#include "crossbeam/tools/height_table.hpp"
+#include "crossbeam/tools/stadium_ring.hpp"
 
 #include <cmath>
 #include <cstdint>

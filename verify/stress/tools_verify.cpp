@@ -1,5 +1,6 @@
 // Tools, meshes and blocks from any numbers: refused, or usable; and asked at any point.
 
+#include "double_dome.hpp"
 #include "dynamics/scenes.hpp"
 #include "fuzz/properties.hpp"
 #include "support/claim.hpp"

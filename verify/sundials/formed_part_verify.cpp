@@ -18,7 +18,8 @@ using verify::claim;
 
 TEST_SUITE_BEGIN("reference");
 
-TEST_CASE("V-REF-08 the formed double dome has a static equilibrium close to the explicit end state") {
+TEST_CASE(
+    "V-REF-08 the formed double dome has a static equilibrium close to the explicit end state") {
   drape::DrapeCase scene = drape::load_scene(drape::scene_path("realistic"));
   REQUIRE(scene.blank.element_size == 5);
   scene.fabric.cell_sweeps = 8;  // the tangent is that of the equilibrium
@@ -27,7 +28,9 @@ TEST_CASE("V-REF-08 the formed double dome has a static equilibrium close to the
   CentralDifference<NativePack<double>> run(std::move(start.model));
   run.start(0.9 * run.critical_step());
   while (run.time() < start.duration) run.step();
-  const auto state = [&] { return drape::formed_state(run.model(), start.mesh, start.nx, start.ny); };
+  const auto state = [&] {
+    return drape::formed_state(run.model(), start.mesh, start.nx, start.ny);
+  };
   const drape::FormedState before = state();
   StaticProblem problem(run.model(), run.time());
   std::vector<double> q(static_cast<std::size_t>(problem.unknowns()));

@@ -32,12 +32,11 @@ TEST_CASE("V-REF-03 Runge-Kutta of order 5 and Adams agree on a drape over a sph
   const Frames a = frames<reference::RungeKutta5>(sheet, {1e-10, 1e-10});
   const Frames b = frames<reference::Adams>(sheet, {1e-10, 1e-10});
   const double moved = displacement(sheet, a);
-  REQUIRE(moved > 13.9);                            // the ball lifted the middle
-  REQUIRE(a.back()[sheet.elements / 2].x() > 1);           // and drew the rim in
-  REQUIRE(a.back()[0].z() == a.front()[0].z());     // which stays in its plane
+  REQUIRE(moved > 13.9);                          // the ball lifted the middle
+  REQUIRE(a.back()[sheet.elements / 2].x() > 1);  // and drew the rim in
+  REQUIRE(a.back()[0].z() == a.front()[0].z());   // which stays in its plane
   double gap = 0;
-  for (std::size_t k = 0; k < a.size(); ++k)
-    gap = std::max(gap, scenes::distance(a[k], b[k]));
+  for (std::size_t k = 0; k < a.size(); ++k) gap = std::max(gap, scenes::distance(a[k], b[k]));
   // Both control their errors at 1e-10 a step; contact and slackness have kinks in higher
   // derivatives, where the estimates are of low order.
   claim("V-REF-03", gap / moved, 1e-7, "gap at ten times over the largest displacement");
@@ -48,11 +47,17 @@ TEST_CASE("V-REF-04 the explicit scheme approaches the reference with order 2") 
   // continuous force, which cost no order.
   const SphereSheet sheet;
   const Frames reference = frames<reference::RungeKutta5>(sheet, {1e-11, 1e-11});
-  const int coarse =
-      static_cast<int>(std::ceil(sheet.duration / 10 / (0.4 * sheet.model<double>().critical_step())));
-  verify::Plot plot{"V-REF-04", "Explicit scheme against Runge-Kutta of order 5", "time step [ms]",
-                    "largest distance of any node at ten times [mm]", true, true, {},
-                    "The slope is the order; the reference's own uncertainty is 1e-8 mm (V-REF-03)."};
+  const int coarse = static_cast<int>(
+      std::ceil(sheet.duration / 10 / (0.4 * sheet.model<double>().critical_step())));
+  verify::Plot plot{
+      "V-REF-04",
+      "Explicit scheme against Runge-Kutta of order 5",
+      "time step [ms]",
+      "largest distance of any node at ten times [mm]",
+      true,
+      true,
+      {},
+      "The slope is the order; the reference's own uncertainty is 1e-8 mm (V-REF-03)."};
   verify::Curve curve{"central differences", {}, {}};
   double before = 0, worst = 0;
   std::string table;
@@ -135,7 +140,8 @@ TEST_CASE("V-REF-09 the fast vector operations are those of SUNDIALS, in place t
       N_VScale_Serial(c[2], y[1], y[into]);
       worst.see(off(x[into], y[into]), "scaled into", into, "length", n);
     }
-    worst.see(std::abs(N_VWrmsNorm(x[3], x[4]) - N_VWrmsNorm_Serial(y[3], y[4])), "norm, length", n);
+    worst.see(std::abs(N_VWrmsNorm(x[3], x[4]) - N_VWrmsNorm_Serial(y[3], y[4])), "norm, length",
+              n);
     N_VDestroy(clone);
     for (N_Vector v : y) N_VDestroy(v);
   }

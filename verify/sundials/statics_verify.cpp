@@ -29,7 +29,8 @@ struct HeldSheet {
     const auto law = fabric(pi / 2, 0.01);
     model.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
         sheet, law, areal_mass, MembraneOptions{1e-4, 0.06}));
-    model.add(std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
+    model.add(
+        std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
     for (int k = 0; k < sheet.node_count; ++k) {
       const Vec3<double> X = sheet.nodes.get(k);
       Vec3<double> x{(1 + xx) * X.x + xy * X.y, (1 + yy) * X.y, 0};
@@ -59,24 +60,32 @@ double order(const StaticResult& r, double round_off) {
 
 TEST_SUITE_BEGIN("reference");
 
-TEST_CASE("V-REF-06 Newton on the consistent tangent converges quadratically, also over slack yarns") {
+TEST_CASE(
+    "V-REF-06 Newton on the consistent tangent converges quadratically, also over slack yarns") {
   VERIFY_RANDOM(random, 906);
   struct Case {
     const char* name;
     double xx, yy, xy;
     bool taut;
   };
-  verify::Plot plot{"V-REF-06", "Newton's method to equilibrium", "iteration",
-                    "unbalanced force [kN]", false, true, {},
-                    "Taut sheets converge in six iterations, doubling the digits at the end. Where "
-                    "yarns pass between taut and slack the tangent jumps from 6.8 to 0.03 kN/mm: with "
-                    "the line search it takes twice as many iterations until no yarn changes sides "
-                    "any more, then the digits double as well."};
+  verify::Plot plot{
+      "V-REF-06",
+      "Newton's method to equilibrium",
+      "iteration",
+      "unbalanced force [kN]",
+      false,
+      true,
+      {},
+      "Taut sheets converge in six iterations, doubling the digits at the end. Where "
+      "yarns pass between taut and slack the tangent jumps from 6.8 to 0.03 kN/mm: with "
+      "the line search it takes twice as many iterations until no yarn changes sides "
+      "any more, then the digits double as well."};
   double worst_order = 10, worst_residual = 0;
   int taut_iterations = 0;
-  for (const Case& c : {Case{"stretched", 0.02, 0.01, 0, true}, Case{"sheared", 0.01, 0.01, 0.3, true},
-                        Case{"kept one way, loose the other", 0, -0.03, 0, false},
-                        Case{"all slack", -0.01, -0.01, 0, false}}) {
+  for (const Case& c :
+       {Case{"stretched", 0.02, 0.01, 0, true}, Case{"sheared", 0.01, 0.01, 0.3, true},
+        Case{"kept one way, loose the other", 0, -0.03, 0, false},
+        Case{"all slack", -0.01, -0.01, 0, false}}) {
     HeldSheet held(c.xx, c.yy, c.xy, !c.taut, random);
     StaticProblem problem(held.model, 0);
     const StaticResult r = find_equilibrium(problem, {1e-10, 500, 0});
@@ -110,7 +119,8 @@ TEST_CASE("V-REF-06 Newton on the consistent tangent converges quadratically, al
   claim("V-REF-06", taut_iterations, 10, "iterations of taut sheets");
 }
 
-TEST_CASE("V-REF-07 a sheet over a sphere: the explicit run comes to rest in the static equilibrium") {
+TEST_CASE(
+    "V-REF-07 a sheet over a sphere: the explicit run comes to rest in the static equilibrium") {
   SphereSheet sheet;
   sheet.stroke = 5;
   sheet.held = true;
@@ -142,8 +152,9 @@ TEST_CASE("V-REF-07 a sheet over a sphere: the explicit run comes to rest in the
   REQUIRE(positions(run.model())[sheet.middle()].z() > 4.8);
   REQUIRE(distances.front() > distances.back());
   claim("V-REF-07", unbalanced, 1e-10, "unbalanced force over the internal forces");
-  claim("V-REF-07", moved, 1e-5,
-        "distance of the explicit run from the equilibrium, two strokes' time after the stroke [mm]");
+  claim(
+      "V-REF-07", moved, 1e-5,
+      "distance of the explicit run from the equilibrium, two strokes' time after the stroke [mm]");
 }
 
 TEST_SUITE_END();

@@ -40,10 +40,10 @@ struct PressedSheet {
     contact.slip_speed = 0.3;
     contact.smoothing = 0.5;
     // A large ball below the whole sheet, and a plate above its middle nodes.
-    model.add(tool<T>(Sphere<double>({10, 10, -99.3}, 100),
-                      ToolMotion::prescribed([](double t) { return 0.05 + 0.4 * t; },
-                                             [](double) { return 0.4; }),
-                      contact, sheet.node_count));
+    model.add(tool<T>(
+        Sphere<double>({10, 10, -99.3}, 100),
+        ToolMotion::prescribed([](double t) { return 0.05 + 0.4 * t; }, [](double) { return 0.4; }),
+        contact, sheet.node_count));
     model.add(tool<T>(Plane<double>({10, 10, 0.2}, {0.02, 0.01, -1}),
                       ToolMotion::free_under([](double) { return -0.02; }, 1e-4, 0.5, 0.05),
                       contact, sheet.node_count));
@@ -62,10 +62,16 @@ struct PressedSheet {
 
 TEST_SUITE_BEGIN("reference");
 
-TEST_CASE("V-REF-01 the sparse tangent is the derivative of the rate: all blocks, contact, damping") {
+TEST_CASE(
+    "V-REF-01 the sparse tangent is the derivative of the rate: all blocks, contact, damping") {
   VERIFY_RANDOM(random, 901);
-  verify::Plot plot{"V-REF-01", "Remainders of the rate of a whole model", "step", "remainder", true,
-                    true, {},
+  verify::Plot plot{"V-REF-01",
+                    "Remainders of the rate of a whole model",
+                    "step",
+                    "remainder",
+                    true,
+                    true,
+                    {},
                     "Membrane, hourglass, viscosity, bending, two tools with damping and friction, "
                     "one of them free, and mass damping: slope 2 says that the sparse matrix is "
                     "the derivative."};
@@ -117,7 +123,9 @@ TEST_CASE("V-REF-01 the sparse tangent is the derivative of the rate: all blocks
   claim("V-REF-01", deviation, 0.02, "distance of the slope from 2, worst of twelve models");
 }
 
-TEST_CASE("V-REF-02 a model in rate form has the forces of the explicit scheme, skipped contacts or not") {
+TEST_CASE(
+    "V-REF-02 a model in rate form has the forces of the explicit scheme, skipped contacts or "
+    "not") {
   const SphereSheet sheet;
   Model<double> model = sheet.model<double>();
   FirstOrderSystem system(model);

@@ -23,7 +23,8 @@ struct ComplexStep {
   ComplexStep() = default;
   ComplexStep(const std::complex<double>& value) : z(value) {}
   template <class A>
-  requires std::is_arithmetic_v<A> ComplexStep(A value) : z(static_cast<double>(value)) {}
+    requires std::is_arithmetic_v<A>
+  ComplexStep(A value) : z(static_cast<double>(value)) {}
 
   /// The variable that is differentiated by.
   static ComplexStep variable(double x) { return std::complex<double>(x, h); }

@@ -4,10 +4,10 @@
 #include "crossbeam/base/counting.hpp"
 
 #include "crossbeam/base/dual.hpp"
-#include "crossbeam/contact/height_table.hpp"
-#include "crossbeam/contact/stadium_ring.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
+#include "crossbeam/tools/height_table.hpp"
+#include "crossbeam/tools/stadium_ring.hpp"
 
 #include <doctest/doctest.h>
 
@@ -39,7 +39,8 @@ auto membrane(SolverControl control) {
   return crossbeam::WovenMembrane(
       crossbeam::CrossedBeamCell<R>(crossbeam::CellParameters<double>{}.cast<R>()),
       crossbeam::PolynomialShear<R>(
-          crossbeam::PolynomialCurve<R>({R(5e-5), R(-8e-4), R(6e-3), R(-1.2e-2), R(8.5e-3)}), angle),
+          crossbeam::PolynomialCurve<R>({R(5e-5), R(-8e-4), R(6e-3), R(-1.2e-2), R(8.5e-3)}),
+          angle),
       angle, crossbeam::YarnWidth::corrected, control);
 }
 
@@ -48,11 +49,9 @@ template <class T, class Law>
 std::vector<T> corner_forces(const Law& law, double warp, double weft, double shear) {
   using Quad = crossbeam::Quadrilateral<1>;
   using R = crossbeam::real_t<T>;
-  const auto constants = Quad::coefficients<R>({{{R(0), R(0), R(0)},
-                                                 {R(1), R(0), R(0)},
-                                                 {R(1), R(1), R(0)},
-                                                 {R(0), R(1), R(0)}}},
-                                               {{R(1), R(0), R(0)}, {R(0), R(1), R(0)}})[0];
+  const auto constants = Quad::coefficients<R>(
+      {{{R(0), R(0), R(0)}, {R(1), R(0), R(0)}, {R(1), R(1), R(0)}, {R(0), R(1), R(0)}}},
+      {{R(1), R(0), R(0)}, {R(0), R(1), R(0)}})[0];
   crossbeam::PointLanes<T, Quad::membrane_vectors> point;
   for (int k = 0; k < Quad::membrane_vectors; ++k) {
     point.t1[k] = T(constants.t1[static_cast<std::size_t>(k)]);
@@ -104,8 +103,9 @@ TEST_CASE_TEMPLATE("a counting number counts what is written", R, float, double)
         OperationCount{.additions = 1, .comparisons = 2, .selections = 2});
   CHECK(count([&] { r = crossbeam::magnitude(-a); }) ==
         OperationCount{.comparisons = 1, .selections = 1, .negations = 2});
-  CHECK(count([&] { r = crossbeam::dot(Vec3<C>{a, b, c}, Vec3<C>{c, b, a}); }) ==
-        OperationCount{.additions = 2, .multiplications = 3});
+  CHECK(count([&] {
+          r = crossbeam::dot(Vec3<C>{a, b, c}, Vec3<C>{c, b, a});
+        }) == OperationCount{.additions = 2, .multiplications = 3});
   CHECK(count([&] { r = per_lane(a, [](R x) { return std::cbrt(x); }) + sin(a); }) ==
         OperationCount{.additions = 1, .functions = 2});
   CHECK(count([&] {
@@ -132,14 +132,13 @@ TEST_CASE("a dual number of counting numbers counts the derivatives too") {
   using D = crossbeam::Dual<Counting<double>, 2>;
   const D x = D::variable(Counting<double>(3), 0), y = D::variable(Counting<double>(4), 1);
   D product;
-  CHECK(count([&] { product = x * y; }) ==
-        OperationCount{.additions = 2, .multiplications = 5});
+  CHECK(count([&] { product = x * y; }) == OperationCount{.additions = 2, .multiplications = 5});
   CHECK(product.d[0].v == 4);
   CHECK(product.d[1].v == 3);
 }
 
-TEST_CASE_TEMPLATE("the kernels on counting numbers answer as on plain ones, at one price", R, float,
-                   double) {
+TEST_CASE_TEMPLATE("the kernels on counting numbers answer as on plain ones, at one price", R,
+                   float, double) {
   using C = Counting<R>;
   std::mt19937_64 random(20261127);
   std::uniform_real_distribution<double> elongation(-0.02, 0.03), shear(-0.7, 0.7);

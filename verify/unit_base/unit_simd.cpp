@@ -142,7 +142,8 @@ TEST_CASE_TEMPLATE("load, store, broadcast, lane_sum and lane_maximum of packs k
 }
 
 TEST_CASE_TEMPLATE("the lanes of a pack in the other precision are those of the scalar", P,
-                   Pack<float, 1>, Pack<float, 2>, Pack<float, 4>, Pack<float, 8>, Pack<float, 16>) {
+                   Pack<float, 1>, Pack<float, 2>, Pack<float, 4>, Pack<float, 8>,
+                   Pack<float, 16>) {
   using Wide = crossbeam::double_lanes_t<P>;
   static_assert(crossbeam::lanes_v<Wide> == crossbeam::lanes_v<P>);
   static_assert(std::is_same_v<typename Wide::Value, double>);

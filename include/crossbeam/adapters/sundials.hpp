@@ -4,8 +4,8 @@
 /// umbrella. A program that includes it links crossbeam::sundials (find_package(crossbeam COMPONENTS
 /// sundials)). Theory: docs/theory/reference.md, [R-3].
 
-#include "crossbeam/dynamics/first_order_system.hpp"
-#include "crossbeam/dynamics/statics.hpp"
+#include "crossbeam/model/first_order_system.hpp"
+#include "crossbeam/model/statics.hpp"
 
 #include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
@@ -276,8 +276,8 @@ class Adams final : public Multistep {
  public:
   explicit Adams(Model<double>& model, const Tolerances& tolerances = {})
       : Multistep(model, tolerances, CV_ADAMS),
-        corrector_(detail::check(SUNNonlinSol_FixedPoint(y_, 0, context_),
-                                 "SUNNonlinSol_FixedPoint")) {
+        corrector_(
+            detail::check(SUNNonlinSol_FixedPoint(y_, 0, context_), "SUNNonlinSol_FixedPoint")) {
     detail::check(CVodeSetNonlinearSolver(memory_, corrector_), "CVodeSetNonlinearSolver");
   }
   ~Adams() override { SUNNonlinSolFree(corrector_); }
@@ -367,9 +367,9 @@ class ResidualForm final : public Integrator {
 };
 
 struct StaticOptions {
-  double tolerance = 1e-10;   ///< largest unbalanced force over the norm of the internal forces [-]
-  int iterations = 200;       ///< at most
-  double largest_step = 0;    ///< of all unknowns together in one iteration [mm]; 0: no bound
+  double tolerance = 1e-10;  ///< largest unbalanced force over the norm of the internal forces [-]
+  int iterations = 200;      ///< at most
+  double largest_step = 0;   ///< of all unknowns together in one iteration [mm]; 0: no bound
 };
 
 struct StaticResult {

@@ -38,10 +38,10 @@ struct OperationCount {
   }
 
   friend OperationCount operator-(const OperationCount& a, const OperationCount& b) {
-    return {a.additions - b.additions,       a.multiplications - b.multiplications,
-            a.divisions - b.divisions,       a.square_roots - b.square_roots,
-            a.comparisons - b.comparisons,   a.selections - b.selections,
-            a.negations - b.negations,       a.functions - b.functions};
+    return {a.additions - b.additions,     a.multiplications - b.multiplications,
+            a.divisions - b.divisions,     a.square_roots - b.square_roots,
+            a.comparisons - b.comparisons, a.selections - b.selections,
+            a.negations - b.negations,     a.functions - b.functions};
   }
   friend bool operator==(const OperationCount&, const OperationCount&) = default;
 };

@@ -139,6 +139,13 @@ struct Eigen::NumTraits<crossbeam::Dual<T, N>> : Eigen::NumTraits<double> {
   using Real = crossbeam::Dual<T, N>;
   using NonInteger = crossbeam::Dual<T, N>;
   using Nested = crossbeam::Dual<T, N>;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 1,
-         AddCost = N + 1, MulCost = 2 * N + 1 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1,
+    AddCost = N + 1,
+    MulCost = 2 * N + 1
+  };
 };

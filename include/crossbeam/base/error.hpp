@@ -105,7 +105,7 @@ namespace detail {
 #define CROSSBEAM_EXPECTS(condition) static_cast<void>(0)
 #else
 /// Precondition of a function; replaceable by defining the macro before the first include.
-#define CROSSBEAM_EXPECTS(condition) \
+#define CROSSBEAM_EXPECTS(condition)  \
   ((condition) ? static_cast<void>(0) \
                : ::crossbeam::detail::contract_violation(#condition, __FILE__, __LINE__))
 #endif

@@ -10,6 +10,6 @@
 #define CROSSBEAM_STRINGIFY_IMPL(x) #x
 #define CROSSBEAM_STRINGIFY(x) CROSSBEAM_STRINGIFY_IMPL(x)
 
-#define CROSSBEAM_VERSION                                                                         \
-  CROSSBEAM_STRINGIFY(CROSSBEAM_VERSION_MAJOR)                                                    \
+#define CROSSBEAM_VERSION                      \
+  CROSSBEAM_STRINGIFY(CROSSBEAM_VERSION_MAJOR) \
   "." CROSSBEAM_STRINGIFY(CROSSBEAM_VERSION_MINOR) "." CROSSBEAM_STRINGIFY(CROSSBEAM_VERSION_PATCH)

@@ -71,13 +71,13 @@ struct SolverControl {
 template <class R, class Law = LinearYarn>
 struct YarnConstants {
   [[no_unique_address]] Law law{};
-  R ka, kb;      ///< axial EA/l0 and bending kbc EI/l0^3 stiffness [kN/mm], tag [C-2]
-  R L, H, l0;    ///< projected length, crimp height, chord length in the unstressed cell [mm]
-  R c0, s0;      ///< cosine and sine of the crimp angle
+  R ka, kb;    ///< axial EA/l0 and bending kbc EI/l0^3 stiffness [kN/mm], tag [C-2]
+  R L, H, l0;  ///< projected length, crimp height, chord length in the unstressed cell [mm]
+  R c0, s0;    ///< cosine and sine of the crimp angle
   R least_start_squared;  ///< least height of a start, squared [mm^2], tag [C-5]
   R kb_c0, kb_s0;         ///< products that the forces need
   R kb_cc, kb_ss, kb_sc;  ///< and the tangents
-  R follow_floor;         ///< least tangent of `follow`: a height that lost its spring stays [kN/mm]
+  R follow_floor;  ///< least tangent of `follow`: a height that lost its spring stays [kN/mm]
 
   YarnConstants() = default;
   YarnConstants(const YarnParameters<R>& yarn, R height, R boundary_factor, Law axial_law)
@@ -201,9 +201,9 @@ class CrossedBeamCell {
   struct Solution {
     CellForces<T> forces{};
     CellStatus status = CellStatus::converged;
-    int sweeps = 0;          ///< Newton sweeps spent
-    T last_correction{};     ///< max |dw| of the last sweep: the error is of its square [mm]
-    T contact_stiffness{};   ///< B of [C-6]: k3 where the contact is closed, else 0
+    int sweeps = 0;         ///< Newton sweeps spent
+    T last_correction{};    ///< max |dw| of the last sweep: the error is of its square [mm]
+    T contact_stiffness{};  ///< B of [C-6]: k3 where the contact is closed, else 0
   };
 
   /// Equilibrium for elongations u_i > -L_i.
@@ -264,14 +264,14 @@ class CrossedBeamCell {
   }
   template <class T>
   CROSSBEAM_INLINE YarnForces<T> follow(const T& u1, const T& u2, const FollowedYarn<T>& y1,
-                                        const FollowedYarn<T>& y2,
-                                        CrimpHeights<T>& heights) const
+                                        const FollowedYarn<T>& y2, CrimpHeights<T>& heights) const
     requires(ContactKind == Contact::unilateral && ScalarTraits<T>::derivative_order == 0)
   {
     const T D12 = y1.D * y2.D, k3 = T(k3_), closed = D12 + k3 * (y1.D + y2.D);
     const T both = T(1) / (closed * D12);  // one division for 1/closed and 1/D12
-    const T q = maximum(k3 * ((y1.g - heights.w1 * y1.D) * y2.D +
-                              (y2.g - heights.w2 * y2.D) * y1.D) * (both * D12), T(0));
+    const T q = maximum(
+        k3 * ((y1.g - heights.w1 * y1.D) * y2.D + (y2.g - heights.w2 * y2.D) * y1.D) * (both * D12),
+        T(0));
     const T r = both * closed, most = T(follow_limit_);
     const T dw1 = maximum(minimum((q - y1.g) * (y2.D * r), most), -most);
     const T dw2 = maximum(minimum((q - y2.g) * (y1.D * r), most), -most);

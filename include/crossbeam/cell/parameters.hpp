@@ -15,8 +15,8 @@ namespace crossbeam {
 /// One yarn of the cell: a beam from the inflection of its crimp wave to the crossing.
 template <class R>
 struct YarnParameters {
-  R youngs_modulus = R(35.4);               ///< E [kN/mm^2]; > 0 (Table 1)
-  R cross_section = R(1);                   ///< A [mm^2]; > 0 (Table 1)
+  R youngs_modulus = R(35.4);                 ///< E [kN/mm^2]; > 0 (Table 1)
+  R cross_section = R(1);                     ///< A [mm^2]; > 0 (Table 1)
   R second_moment_of_area = R(1) / R(10000);  ///< I [mm^4]; >= 0 (Table 1)
   R length = R(2.5);  ///< L, in-plane distance from inflection to crossing [mm]; > 0 (Table 1)
 
@@ -32,11 +32,11 @@ template <class R = double>
 struct CellParameters {
   YarnParameters<R> warp{};
   YarnParameters<R> weft{};
-  R contact_modulus = R(1);               ///< E3 [kN/mm^2]; > 0
-  R contact_area = R(176) / R(10);        ///< A3 [mm^2]; > 0
-  R contact_length = R(8) / R(10);        ///< L3, distance of the yarns' centre lines [mm]; > 0
-  R warp_height_fraction = R(1) / R(2);   ///< chi = H1 / L3 [-]; in (0, 1)
-  R bending_boundary_factor = R(3);       ///< kbc: 3 hinged at the inflection, 12 clamped [-]; > 0
+  R contact_modulus = R(1);              ///< E3 [kN/mm^2]; > 0
+  R contact_area = R(176) / R(10);       ///< A3 [mm^2]; > 0
+  R contact_length = R(8) / R(10);       ///< L3, distance of the yarns' centre lines [mm]; > 0
+  R warp_height_fraction = R(1) / R(2);  ///< chi = H1 / L3 [-]; in (0, 1)
+  R bending_boundary_factor = R(3);      ///< kbc: 3 hinged at the inflection, 12 clamped [-]; > 0
   R residual_compression_stiffness = R(0);  ///< kres, extra axial stiffness of a shortened yarn
                                             ///< [kN/mm]; >= 0, tag [C-8]
   int symmetry = 1;  ///< nsym: 1 as printed in Eq. 15; 2 for the full period, with A3/2; tag [C-9]
@@ -59,8 +59,8 @@ struct CellParameters {
 /// The numbers of a cell as the solver forms them.
 template <class R>
 struct CellRange {
-  R least_stiffness;  ///< of the yarns along their chords and of the contact
-  R total_stiffness;  ///< these and bending added: not a number if one of them is none
+  R least_stiffness;              ///< of the yarns along their chords and of the contact
+  R total_stiffness;              ///< these and bending added: not a number if one of them is none
   R softest_yarn, stiffest_yarn;  ///< along their chords; the stiffest also in bending
   R least_length, largest_length;
 
@@ -130,21 +130,20 @@ void validate(const CellParameters<R>& p, const std::string& prefix = "cell") {
   require_positive(prefix + ".contact_length", p.contact_length, "mm");
   require_between(prefix + ".warp_height_fraction", p.warp_height_fraction, "-", 0, 1);
   require_positive(prefix + ".bending_boundary_factor", p.bending_boundary_factor, "-");
-  require_non_negative(prefix + ".residual_compression_stiffness",
-                       p.residual_compression_stiffness, "kN/mm");
+  require_non_negative(prefix + ".residual_compression_stiffness", p.residual_compression_stiffness,
+                       "kN/mm");
   if (p.symmetry != 1 && p.symmetry != 2)
     throw InputError(prefix + ".symmetry", std::to_string(p.symmetry), "", "1 or 2");
   const CellRange<R> range(p);
   if (!range.workable())
-    throw InputError(prefix,
-                     detail::to_text(range.least_stiffness) + " to " +
-                         detail::to_text(range.total_stiffness) +
-                         " kN/mm (E A / l0 of the yarns, E3 A3 / L3) on lengths of " +
-                         detail::to_text(range.least_length) +
-                         " to " + detail::to_text(range.largest_length),
-                     "mm",
-                     "stiffness^3, times a length or not, and stiffness length^3 must be numbers "
-                     "with all their digits: choose other units");
+    throw InputError(
+        prefix,
+        detail::to_text(range.least_stiffness) + " to " + detail::to_text(range.total_stiffness) +
+            " kN/mm (E A / l0 of the yarns, E3 A3 / L3) on lengths of " +
+            detail::to_text(range.least_length) + " to " + detail::to_text(range.largest_length),
+        "mm",
+        "stiffness^3, times a length or not, and stiffness length^3 must be numbers "
+        "with all their digits: choose other units");
   using std::sqrt;
   if (!range.comparable())
     throw InputError(prefix + ": stiffest yarn, along or in bending, over the softest",

@@ -4,9 +4,9 @@
 /// proven bound of the critical step, and the energy ledger. Theory: docs/theory/dynamics.md.
 
 #include "crossbeam/base/simd.hpp"
-#include "crossbeam/dynamics/ledger.hpp"
-#include "crossbeam/dynamics/model.hpp"
 #include "crossbeam/dynamics/step_order.hpp"
+#include "crossbeam/model/ledger.hpp"
+#include "crossbeam/model/model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +73,8 @@ class CentralDifference {
   /// node moves too fast, those behind it have gone on when it is found.
   void advance(long long steps) {
     while (steps > 0) {
-      const int together = steps_ == 0 ? 1 : static_cast<int>(std::min<long long>(steps, in_flight()));
+      const int together =
+          steps_ == 0 ? 1 : static_cast<int>(std::min<long long>(steps, in_flight()));
       if (together > 1)
         step_together(together);
       else
@@ -131,7 +132,8 @@ class CentralDifference {
 
   void clear_forces(int level) {
     const bool last = level + 1 == levels();
-    model_.clear_forces(level_start_[level], last ? model_.padded_count() : level_start_[level + 1]);
+    model_.clear_forces(level_start_[level],
+                        last ? model_.padded_count() : level_start_[level + 1]);
   }
   void add_internal_forces(const StepOrder::Place& place) {
     for (int level = place.clear_begin; level < place.clear_end; ++level) clear_forces(level);
@@ -174,7 +176,9 @@ class CentralDifference {
   /// @param count 1, or up to `in_flight`
   void step_together(int count) {
     begin_steps(count);
-    const auto task = [this](const StepOrder::Place& place, int flight = 0) { pass(place, flight); };
+    const auto task = [this](const StepOrder::Place& place, int flight = 0) {
+      pass(place, flight);
+    };
     if (count == 1)
       order_.share(team_, task);
     else
@@ -255,8 +259,8 @@ class CentralDifference {
     for (std::size_t k = 0; k < model_.tools.size(); ++k) {
       const double moved = model_.tools[k]->advance(time, dt_, flight);
       if (!std::isfinite(moved))
-        throw RunError(when() + "tool " + std::to_string(k) + " is at z = " +
-                       detail::to_text(model_.tools[k]->position()) +
+        throw RunError(when() + "tool " + std::to_string(k) +
+                       " is at z = " + detail::to_text(model_.tools[k]->position()) +
                        " mm: its motion z(t) or force F(t) gives no number");
       furthest = std::max(furthest, moved);
     }
@@ -294,8 +298,8 @@ class CentralDifference {
     const T half(static_cast<R>(-dt_ / 2)), alpha(static_cast<R>(model_.mass_damping));
     for (int n = 0; n < model_.state.node_count; n += lanes) {
       const Vec3<T> v = constrained(n, load<T>(model_.state.v, n));
-      initial_ += 0.5 * static_cast<double>(
-                            lane_sum(T::load(model_.state.mass.data() + n) * dot(v, v)));
+      initial_ +=
+          0.5 * static_cast<double>(lane_sum(T::load(model_.state.mass.data() + n) * dot(v, v)));
       store(model_.state.v, n, constrained(n, v + half * (acceleration(n) - alpha * v)));
     }
   }
@@ -323,8 +327,7 @@ class CentralDifference {
     const std::ptrdiff_t first = level_start_[level], last = level_start_[level + 1];
     for (std::ptrdiff_t n = first, pack = first / lanes; n < last; n += lanes, ++pack) {
       const Vec3<T> before = v.template load<T>(n);
-      Vec3<T> after =
-          keep * before + (push * T::load(inverse_mass + n)) * f.template load<T>(n);
+      Vec3<T> after = keep * before + (push * T::load(inverse_mass + n)) * f.template load<T>(n);
       if (is_constrained[pack]) after = constrained(static_cast<int>(n), after);
       v.store(n, after);
       predicted.store(n, three_halves * after - half * before);
@@ -373,8 +376,8 @@ class CentralDifference {
     for (int n = 0; n < model_.state.node_count; n += lanes) {
       const Vec3<T> v = load<T>(model_.state.v, n);
       const Vec3<T> before = two * centre_velocity(n) - v;
-      out.kinetic +=
-          0.5 * static_cast<double>(lane_sum(T::load(model_.state.mass.data() + n) * dot(before, v)));
+      out.kinetic += 0.5 * static_cast<double>(
+                               lane_sum(T::load(model_.state.mass.data() + n) * dot(before, v)));
     }
     for (const auto& t : model_.tools) {
       out.kinetic += t->kinetic_energy();
@@ -387,8 +390,8 @@ class CentralDifference {
 
   Model<R> model_;
   std::vector<int> level_start_;
-  std::vector<char> is_constrained_;   // packs with a node that is held
-  std::vector<double> level_travel_;   // bound of how far any node has moved since the start [mm]
+  std::vector<char> is_constrained_;  // packs with a node that is held
+  std::vector<double> level_travel_;  // bound of how far any node has moved since the start [mm]
   StepOrder order_;
   std::vector<LevelSums> sums_;        // of flight 0, level after level; of flight 1, ...
   std::vector<double> flight_travel_;  // of all tools before the step

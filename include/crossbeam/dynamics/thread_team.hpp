@@ -23,7 +23,8 @@ class ThreadTeam {
       throw InputError("threads", std::to_string(threads), "", "1 to 256");
     if (threads == 1) return;
     shared_ = std::make_unique<Shared>();
-    for (int k = 1; k < threads; ++k) workers_.emplace_back([shared = shared_.get()] { shared->serve(); });
+    for (int k = 1; k < threads; ++k)
+      workers_.emplace_back([shared = shared_.get()] { shared->serve(); });
   }
   ThreadTeam(ThreadTeam&&) = default;
   ThreadTeam& operator=(ThreadTeam&& other) {

@@ -44,7 +44,8 @@ inline double ring_radius(const std::vector<StencilNeighbour>& ring) {
     size = std::max(size, distance);
   }
   const double squared = size * size;
-  return squared >= Limits::min() / Limits::epsilon() && squared <= Limits::max() * Limits::epsilon()
+  return squared >= Limits::min() / Limits::epsilon() &&
+                 squared <= Limits::max() * Limits::epsilon()
              ? size
              : 0;
 }

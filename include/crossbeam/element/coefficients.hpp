@@ -45,7 +45,9 @@ struct ElementAxes {
     e1 = (R(1) / norm(tangent)) * tangent;
     e2 = cross(n, e1);
   }
-  [[nodiscard]] std::array<R, 2> project(const Vec3<R>& v) const { return {dot(v, e1), dot(v, e2)}; }
+  [[nodiscard]] std::array<R, 2> project(const Vec3<R>& v) const {
+    return {dot(v, e1), dot(v, e2)};
+  }
 };
 
 }  // namespace detail

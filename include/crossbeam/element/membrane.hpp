@@ -61,9 +61,7 @@ CROSSBEAM_INLINE void point_forces(const PointKinematics<T, M, K>& kinematics,
   const T a11 = point.weight * m.m11, a22 = point.weight * m.m22, a12 = point.weight * m.m12;
   const Vec3<T> P1 = a11 * kinematics.f1 + a12 * kinematics.f2;
   const Vec3<T> P2 = a12 * kinematics.f1 + a22 * kinematics.f2;
-  unrolled<M>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
-    R[k] = point.t1[k] * P1 + point.t2[k] * P2;
-  });
+  unrolled<M>([&](auto k) CROSSBEAM_INLINE_LAMBDA { R[k] = point.t1[k] * P1 + point.t2[k] * P2; });
 }
 
 /// Adds them to R.

@@ -69,8 +69,7 @@ CROSSBEAM_INLINE T pack_asin(const T& x, const T& root) {
   constexpr double sine_of_octant = 0.38268343236508977173;  // sin(pi/8)
   const T a = magnitude(x);
   const auto middle = a > T(R(sine_of_octant)), large = root < T(R(sine_of_octant));
-  const T s = select(large, -root,
-                     select(middle, (a - root) * T(R(1 / std::numbers::sqrt2)), a));
+  const T s = select(large, -root, select(middle, (a - root) * T(R(1 / std::numbers::sqrt2)), a));
   const T turned = select(large, T(half_pi<R>()), select(middle, T(half_pi<R>() / R(2)), T(0)));
   const T z = s * s;
   T p;
@@ -144,8 +143,7 @@ CROSSBEAM_INLINE FibreStrain<T> fibre_strain(const Vec3<T>& f1, const Vec3<T>& f
 /// The same from the increments g_a = f_a - F_a: no cancellation, tag [K-1].
 template <class T>
 CROSSBEAM_INLINE FibreStrain<T> fibre_strain_from_increment(const Vec3<T>& g1, const Vec3<T>& g2,
-                                                            const Vec3<T>& F1,
-                                                            const Vec3<T>& F2) {
+                                                            const Vec3<T>& F1, const Vec3<T>& F2) {
   return {dot(F1, g1) + T(0.5) * dot(g1, g1), dot(F2, g2) + T(0.5) * dot(g2, g2),
           T(0.5) * (dot(F1, g2) + dot(F2, g1) + dot(g1, g2))};
 }

@@ -82,7 +82,8 @@ class ConstantShear {
     return gradient(s.beta, T(0), T(0));
   }
   template <class T>
-  CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreStrain<T>& beta, const T&, const T&) const {
+  CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreStrain<T>& beta, const T&,
+                                              const T&) const {
     const T dW = T(R(2) * G_) * strain(beta);
     return {T(a_) * dW, T(0), T(b_) * dW};
   }
@@ -204,8 +205,8 @@ class PolynomialCurve {
       throw InputError("shear.coefficients", std::to_string(coefficients.size()) + " numbers", "",
                        "1 to 8 numbers");
     for (int k = 0; k < static_cast<int>(coefficients.size()); ++k) {
-      modulus_[k] = require_finite("shear.coefficients[" + std::to_string(k) + "]",
-                                   coefficients[k], "kN/mm");
+      modulus_[k] =
+          require_finite("shear.coefficients[" + std::to_string(k) + "]", coefficients[k], "kN/mm");
       traction_[k] = modulus_[k] / R(k + 1);
       energy_[k] = traction_[k] / R(k + 2);
     }
@@ -260,15 +261,15 @@ class TabulatedCurve {
   /// @param traction [kN/mm], from 0, not decreasing
   TabulatedCurve(const std::vector<R>& angle, const std::vector<R>& traction) {
     if (angle.size() < 2 || angle.size() != traction.size())
-      throw InputError("shear.angle / shear.traction",
-                       std::to_string(angle.size()) + " / " + std::to_string(traction.size()) +
-                           " numbers",
-                       "", "two lists of the same length, 2 or more");
+      throw InputError(
+          "shear.angle / shear.traction",
+          std::to_string(angle.size()) + " / " + std::to_string(traction.size()) + " numbers", "",
+          "two lists of the same length, 2 or more");
     require_finite("shear.angle[0]", angle[0], "rad");
     if (angle[0] != R(0) || traction[0] != R(0))
       throw InputError("shear.angle[0], shear.traction[0]",
-                       detail::to_text(angle[0]) + ", " + detail::to_text(traction[0]), "rad, kN/mm",
-                       "0, 0");
+                       detail::to_text(angle[0]) + ", " + detail::to_text(traction[0]),
+                       "rad, kN/mm", "0, 0");
     R slope(0);
     for (std::size_t k = 0; k + 1 < angle.size(); ++k) {
       const std::string next = std::to_string(k + 1);

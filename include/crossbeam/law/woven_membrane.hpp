@@ -49,8 +49,8 @@ class WovenMembrane {
     const auto& p = cell_.parameters();
     L1_ = p.warp.length;
     L2_ = p.weft.length;
-    inv_A0_ = R(1) / (R(p.symmetry) * L1_ * L2_ *
-                      (width == YarnWidth::corrected ? reference.sine : R(1)));
+    inv_A0_ = R(1) /
+              (R(p.symmetry) * L1_ * L2_ * (width == YarnWidth::corrected ? reference.sine : R(1)));
     width1_ = L1_ * inv_A0_;
     width2_ = L2_ * inv_A0_;
   }
@@ -103,8 +103,7 @@ class WovenMembrane {
   /// @param heights moved on to the equilibrium
   template <class T>
   CROSSBEAM_INLINE void follow(const T& u1, const T& u2, const T& inv1, const T& inv2,
-                               const FollowedYarn<T>& y1,
-                               const FollowedYarn<T>& y2,
+                               const FollowedYarn<T>& y1, const FollowedYarn<T>& y2,
                                CrimpHeights<T>& heights, T& m11, T& m22) const {
     const YarnForces<T> F = cell_.follow(u1, u2, y1, y2, heights);
     m11 = F.F1 * T(width1_) * inv1;
@@ -154,10 +153,8 @@ class WovenMembrane {
     const CellTangent<T> K = cell_.tangent(s.u1, s.u2, s.cell);
     StrainHessian<T> h = shear_.hessian(s.fibres);
     const T inv1 = T(1) / s.fibres.lambda1, inv2 = T(1) / s.fibres.lambda2;
-    h.h11 = h.h11 + T(width1_) * inv1 * inv1 *
-                        (T(L1_) * K.K11 - s.cell.forces.F1 * inv1);
-    h.h22 = h.h22 + T(width2_) * inv2 * inv2 *
-                        (T(L2_) * K.K22 - s.cell.forces.F2 * inv2);
+    h.h11 = h.h11 + T(width1_) * inv1 * inv1 * (T(L1_) * K.K11 - s.cell.forces.F1 * inv1);
+    h.h22 = h.h22 + T(width2_) * inv2 * inv2 * (T(L2_) * K.K22 - s.cell.forces.F2 * inv2);
     h.h12 = h.h12 + T(L1_ * L2_ * inv_A0_) * K.K12 * inv1 * inv2;
     return h;
   }
@@ -188,9 +185,9 @@ class WovenMembrane {
 /// What a host code gets back at a strain E (Y components).
 template <class T>
 struct MembraneResponse {
-  T energy{};            ///< per unit reference area [kN/mm]
-  Matrix2<T> S;          ///< second Piola-Kirchhoff stress, Y components [kN/mm, t = 1]
-  Matrix3<T> dS_dE;      ///< rows (S11, S22, S12), columns (E11, E22, 2 E12); on request
+  T energy{};        ///< per unit reference area [kN/mm]
+  Matrix2<T> S;      ///< second Piola-Kirchhoff stress, Y components [kN/mm, t = 1]
+  Matrix3<T> dS_dE;  ///< rows (S11, S22, S12), columns (E11, E22, 2 E12); on request
   /// Of the cell; outside_kinematics also for a strain that no deformation has (yarns on one line or
   /// beyond), not_converged also for an answer beyond the largest number.
   CellStatus status = CellStatus::converged;
@@ -233,8 +230,8 @@ MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
       Matrix3<T> H, V;
       H << h.h11, h.h12, h.h13, h.h12, h.h22, h.h23, h.h13, h.h23, h.h33;
       // The first row of c is (1, 0): Y1 is the warp.
-      V << T(1), T(0), T(0),                                                    //
-          c(1, 0) * c(1, 0), c(1, 1) * c(1, 1), c(1, 0) * c(1, 1),              //
+      V << T(1), T(0), T(0),                                        //
+          c(1, 0) * c(1, 0), c(1, 1) * c(1, 1), c(1, 0) * c(1, 1),  //
           c(1, 0), T(0), T(0.5) * c(1, 1);
       out.dS_dE = V.transpose() * H * V;
     }

@@ -20,9 +20,9 @@ namespace crossbeam {
 template <int Corners>
 struct Mesh {
   int node_count = 0;
-  NodeVectors<double> nodes;                    ///< reference positions [mm]
+  NodeVectors<double> nodes;                       ///< reference positions [mm]
   std::vector<std::array<int, Corners>> elements;  ///< node numbers, counter-clockwise
-  std::vector<FibreDirections<double>> fibres;  ///< per element; normalised by the constructor
+  std::vector<FibreDirections<double>> fibres;     ///< per element; normalised by the constructor
 
   /// Checks everything that a run relies on and normalises the fibre directions.
   /// @param positions reference positions [mm]
@@ -31,7 +31,8 @@ struct Mesh {
   ///   direction that is not finite, an element without area or with an inverted corner, a fibre out
   ///   of the element's plane by more than 5 deg, warp and weft at 0 or 180 deg or the wrong way
   ///   round.
-  Mesh(const std::vector<Vec3<double>>& positions, std::vector<std::array<int, Corners>> connectivity,
+  Mesh(const std::vector<Vec3<double>>& positions,
+       std::vector<std::array<int, Corners>> connectivity,
        std::vector<FibreDirections<double>> fibre_directions)
       : node_count(static_cast<int>(positions.size())),
         nodes(node_count),
@@ -83,8 +84,8 @@ struct Mesh {
     const std::string name = "mesh.elements[" + std::to_string(e) + "]";
     for (int n : elements[e])
       if (n < 0 || n >= node_count)
-        throw InputError(name, std::to_string(n), "", "node numbers from 0 to " +
-                                                          std::to_string(node_count - 1));
+        throw InputError(name, std::to_string(n), "",
+                         "node numbers from 0 to " + std::to_string(node_count - 1));
     const auto X = corners(static_cast<int>(e));
     using Element = std::conditional_t<Corners == 3, Triangle, Quadrilateral<1>>;
     const Vec3<double> area_vector = Element::area_vector(X);

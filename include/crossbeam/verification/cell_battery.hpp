@@ -20,7 +20,8 @@ inline constexpr Claim cell_rest{"B-CELL-01", "Cell", "The unstressed cell carri
 inline constexpr Claim cell_forces{
     "B-CELL-02", "Cell", "Forces are the gradient of the energy, the tangent its second derivative",
     "Taylor remainders, slopes 2 and 3", "0.1 of slope 2, 0.2 of slope 3: next term of the series"};
-inline constexpr Claim cell_tangent{"B-CELL-03", "Cell", "The tangent is the derivative of the forces",
+inline constexpr Claim cell_tangent{"B-CELL-03", "Cell",
+                                    "The tangent is the derivative of the forces",
                                     "Taylor remainders, slope 2", "0.1 of the slope: next term"};
 inline constexpr Claim cell_duals{"B-CELL-04", "Cell", "Dual numbers agree with forces and tangent",
                                   "forward differentiation of the solver",
@@ -28,9 +29,9 @@ inline constexpr Claim cell_duals{"B-CELL-04", "Cell", "Dual numbers agree with 
 inline constexpr Claim cell_loops{"B-CELL-05", "Cell", "Closed loops of strain do no work",
                                   "Gauss quadrature around taut rectangles",
                                   "1e-9 of the peak energy: quadrature"};
-inline constexpr Claim cell_solver{
-    "B-CELL-06", "Cell", "The solver answers every state between -20 and 10 % strain",
-    "status, and numbers that are finite", "a count: 0"};
+inline constexpr Claim cell_solver{"B-CELL-06", "Cell",
+                                   "The solver answers every state between -20 and 10 % strain",
+                                   "status, and numbers that are finite", "a count: 0"};
 inline constexpr Claim cell_input{"B-CELL-07", "Cell",
                                   "Input without an answer gets a status, not a silent NaN",
                                   "adversarial list", "a count: 0"};
@@ -105,7 +106,8 @@ void verify_cell_derivatives(Battery& battery, const Cell& cell, const CellScale
     const auto remainder = [&](bool second) {
       return [&, second](double eps) {
         const double a = eps * h1, b = eps * h2;
-        double r = cell.energy(u1 + a, u2 + b, cell.solve(u1 + a, u2 + b)) - W - F.F1 * a - F.F2 * b;
+        double r =
+            cell.energy(u1 + a, u2 + b, cell.solve(u1 + a, u2 + b)) - W - F.F1 * a - F.F2 * b;
         if (second) r -= (K.K11 * a * a + 2 * K.K12 * a * b + K.K22 * b * b) / 2;
         return r;
       };
@@ -128,20 +130,25 @@ void verify_cell_derivatives(Battery& battery, const Cell& cell, const CellScale
     const auto dual = cell.solve(a, b);
     const D energy = cell.energy(a, b, dual);
     duals.see(std::max(std::abs(energy.d[0] - F.F1), std::abs(energy.d[1] - F.F2)) / scale.force());
-    duals.see(std::max({std::abs(dual.forces.F1.d[0] - K.K11), std::abs(dual.forces.F1.d[1] - K.K12),
-                        std::abs(dual.forces.F2.d[0] - K.K12),
-                        std::abs(dual.forces.F2.d[1] - K.K22)}) /
-              scale.stiffness);
+    duals.see(
+        std::max({std::abs(dual.forces.F1.d[0] - K.K11), std::abs(dual.forces.F1.d[1] - K.K12),
+                  std::abs(dual.forces.F2.d[0] - K.K12), std::abs(dual.forces.F2.d[1] - K.K22)}) /
+        scale.stiffness);
   }
   one.measure(battery, claims::cell_forces, 0.1, "energy less its linear part: slope off 2");
   two.measure(battery, claims::cell_forces, 0.2, "energy less its quadratic part: slope off 3");
   tangent.measure(battery, claims::cell_tangent, 0.1, "forces less their linear part: slope off 2");
   battery.measure(claims::cell_duals, duals, 1e-10, "forces and tangent, relative");
-  battery.show(Plot{claims::cell_forces.id, "Taylor remainders of the cell", "step [strain]",
-                    "remainder [kN mm], [kN]", true, true,
+  battery.show(Plot{claims::cell_forces.id,
+                    "Taylor remainders of the cell",
+                    "step [strain]",
+                    "remainder [kN mm], [kN]",
+                    true,
+                    true,
                     {one.curve("energy, slope 2"), two.curve("energy, slope 3"),
                      tangent.curve("forces, slope 2")},
-                    "Straight lines of slope 2, 3 and 2 down to round-off.", false});
+                    "Straight lines of slope 2, 3 and 2 down to round-off.",
+                    false});
 }
 
 template <class Cell>
@@ -194,8 +201,8 @@ void verify_cell_solver(Battery& battery, const Cell& cell, const CellScale& sca
   double failures = 0;
   Curve sweeps{"states", {}, {}, Curve::Style::line};
   for (int sample = 0; sample < 20000; ++sample) {
-    const auto s = cell.solve(scale.L1 * random.uniform(-0.2, 0.1),
-                              scale.L2 * random.uniform(-0.2, 0.1));
+    const auto s =
+        cell.solve(scale.L1 * random.uniform(-0.2, 0.1), scale.L2 * random.uniform(-0.2, 0.1));
     failures += s.status != CellStatus::converged || !finite(s.forces);
     if constexpr (requires { s.sweeps; }) {
       while (static_cast<int>(sweeps.y.size()) <= s.sweeps) {
@@ -207,14 +214,21 @@ void verify_cell_solver(Battery& battery, const Cell& cell, const CellScale& sca
   }
   battery.measure(claims::cell_solver, failures, 0, "failures in 20000 random states");
   if (!sweeps.y.empty())
-    battery.show(Plot{claims::cell_solver.id, "Newton sweeps to convergence", "sweeps", "states",
-                      false, true, {sweeps}, "No tail: the solver does not struggle anywhere.", true});
+    battery.show(Plot{claims::cell_solver.id,
+                      "Newton sweeps to convergence",
+                      "sweeps",
+                      "states",
+                      false,
+                      true,
+                      {sweeps},
+                      "No tail: the solver does not struggle anywhere.",
+                      true});
 
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   double silent = 0;
-  for (const double a : {0.0, -0.0, 1e-320, 1e-300, 0.02, 10.0, 1e150, 1e308, -1.0, -1.1, -1e308,
-                         nan, inf, -inf})
+  for (const double a :
+       {0.0, -0.0, 1e-320, 1e-300, 0.02, 10.0, 1e150, 1e308, -1.0, -1.1, -1e308, nan, inf, -inf})
     for (const double b : {0.0, 1e-320, -0.02, 1e150, -1.0, -10.0, nan, inf, -inf}) {
       const auto s = cell.solve(scale.L1 * a, scale.L2 * b);
       const bool impossible = !(a > -1 && b > -1 && a < inf && b < inf);
@@ -253,21 +267,27 @@ void verify_cell_stiffness(Battery& battery, const Cell& cell, const CellScale& 
       const double u1 = 0.002 * i * scale.L1, u2 = 0.002 * j * scale.L2;
       const auto s = cell.solve(u1, u2);
       const CellTangent<double> K = cell.tangent(u1, u2, s);
-      const auto most =
-          least_and_most(K.K11 * scale.L1 * scale.L1 / scale.width,
-                         K.K22 * scale.L2 * scale.L2 / scale.width,
-                         K.K12 * scale.L1 * scale.L2 / scale.width)[1];
+      const auto most = least_and_most(K.K11 * scale.L1 * scale.L1 / scale.width,
+                                       K.K22 * scale.L2 * scale.L2 / scale.width,
+                                       K.K12 * scale.L1 * scale.L2 / scale.width)[1];
       const double tension =
           std::max({s.forces.F1 * scale.L1, s.forces.F2 * scale.L2, 0.0}) / scale.width;
       above = std::max(above, (most - tension) / bound);
       if (s.forces.F1 > 1e-3 * scale.force() && s.forces.F2 > 1e-3 * scale.force())
         unstable = std::max(unstable, -least_and_most(K.K11, K.K22, K.K12)[0] / scale.stiffness);
     }
-  battery.measure(claims::cell_bound, above, 1.001, "largest eigenvalue less tension, over the bound");
+  battery.measure(claims::cell_bound, above, 1.001,
+                  "largest eigenvalue less tension, over the bound");
   battery.measure(claims::cell_taut, unstable, 1e-4, "most negative eigenvalue, relative");
 
-  Plot plot{claims::cell_bound.id, "Forces of the cell", "warp strain [%]", "force [kN]",
-            false, false, {}, "Stiffening by decrimping; no jump, no negative slope in tension.",
+  Plot plot{claims::cell_bound.id,
+            "Forces of the cell",
+            "warp strain [%]",
+            "force [kN]",
+            false,
+            false,
+            {},
+            "Stiffening by decrimping; no jump, no negative slope in tension.",
             false};
   Curve balanced{"warp, both strained", {}, {}}, single{"warp, weft held", {}, {}},
       other{"weft, weft held", {}, {}};
@@ -292,8 +312,8 @@ void verify_cell(Battery& battery, const Cell& cell) {
   const detail::CellScale scale(cell);
   const auto rest = cell.solve(0.0, 0.0);
   battery.measure(claims::cell_rest,
-                  std::max(std::abs(rest.forces.F1), std::abs(rest.forces.F2)) / scale.force(), 1e-13,
-                  "forces at rest, relative");
+                  std::max(std::abs(rest.forces.F1), std::abs(rest.forces.F2)) / scale.force(),
+                  1e-13, "forces at rest, relative");
   battery.measure(claims::cell_rest, std::abs(cell.energy(0.0, 0.0, rest)) / scale.energy(), 1e-13,
                   "energy at rest, relative");
   detail::verify_cell_derivatives(battery, cell, scale);
@@ -337,8 +357,14 @@ void verify_axial_law(Battery& battery, const Law& law) {
   battery.measure(claims::yarn_convex, decrease, 1e-12, "most negative modulus");
   battery.measure(claims::yarn_convex, concave, 1e-12, "largest loss of modulus, 1e-4 strain on");
   battery.measure(claims::yarn_bound, above, 1e-12, "largest modulus above the bound");
-  battery.show(Plot{claims::yarn_tension.id, "Axial law of the yarn", "strain [%]",
-                    "tension / EA [%]", false, false, {curve}, "Through zero, rising, convex.",
+  battery.show(Plot{claims::yarn_tension.id,
+                    "Axial law of the yarn",
+                    "strain [%]",
+                    "tension / EA [%]",
+                    false,
+                    false,
+                    {curve},
+                    "Through zero, rising, convex.",
                     false});
 
   using P = Pack<double, 4>;

@@ -23,9 +23,9 @@ inline constexpr Claim element_patch{
 inline constexpr Claim element_rigid{"B-ELEM-02", "Element",
                                      "Rigid motions cost no energy, and forces turn along",
                                      "random rotations", "2e-12: the same rounding"};
-inline constexpr Claim element_gradient{"B-ELEM-03", "Element",
-                                        "Nodal forces are minus the gradient of the energy",
-                                        "Taylor remainders, slope 2", "0.05 of the slope: next term"};
+inline constexpr Claim element_gradient{
+    "B-ELEM-03", "Element", "Nodal forces are minus the gradient of the energy",
+    "Taylor remainders, slope 2", "0.05 of the slope: next term"};
 inline constexpr Claim element_balance{"B-ELEM-04", "Element",
                                        "The forces of a patch sum to zero and have no moment",
                                        "statics", "1e-13: 200 roundings"};
@@ -33,8 +33,9 @@ inline constexpr Claim element_modes{
     "B-ELEM-05", "Element", "One flat, unstressed element has no mode without energy but its own",
     "zero pivots of the differenced stiffness",
     "a count: the six rigid motions, and the hourglass out of the plane of 2x2 points"};
-inline constexpr Claim element_lanes{"B-ELEM-06", "Element", "Any width of pack gives the same forces",
-                                     "one lane", "1e-13: order of summation"};
+inline constexpr Claim element_lanes{"B-ELEM-06", "Element",
+                                     "Any width of pack gives the same forces", "one lane",
+                                     "1e-13: order of summation"};
 
 }  // namespace claims
 
@@ -119,15 +120,24 @@ void verify_element(Battery& battery, int spurious_modes = 0) {
         1e-4, 1e-13 * W);
   }
   battery.measure(claims::element_patch, patch, 2e-12, "nodal forces against border tractions");
-  battery.measure(claims::element_rigid, rigid, 2e-13, "forces at rest, turned and moved, relative");
+  battery.measure(claims::element_rigid, rigid, 2e-13,
+                  "forces at rest, turned and moved, relative");
   battery.measure(claims::element_rigid, turned, 2e-12, "forces turned along, relative");
-  slopes.measure(battery, claims::element_gradient, 0.05, "energy less its linear part: slope off 2");
+  slopes.measure(battery, claims::element_gradient, 0.05,
+                 "energy less its linear part: slope off 2");
   battery.measure(claims::element_balance, sums, 1e-13, "sum of the forces over the largest");
   battery.measure(claims::element_balance, moments, 1e-13, "moment, relative");
-  battery.measure(claims::element_lanes, lanes, 1e-13, "forces in four lanes against one, relative");
-  battery.show(Plot{claims::element_gradient.id, "Taylor remainders of a patch", "step [mm]",
-                    "remainder [kN mm]", true, true, {slopes.curve("energy, slope 2")},
-                    "A straight line of slope 2 down to round-off.", false});
+  battery.measure(claims::element_lanes, lanes, 1e-13,
+                  "forces in four lanes against one, relative");
+  battery.show(Plot{claims::element_gradient.id,
+                    "Taylor remainders of a patch",
+                    "step [mm]",
+                    "remainder [kN mm]",
+                    true,
+                    true,
+                    {slopes.curve("energy, slope 2")},
+                    "A straight line of slope 2 down to round-off.",
+                    false});
 
   // Modes without energy of one element, by differences of its forces.
   Points X = grid(1, 1, edge, distortion, random), used;

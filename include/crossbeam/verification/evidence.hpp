@@ -126,9 +126,9 @@ inline std::string to_json(const Measurement& m) {
       .text();
 }
 inline std::string to_json(const Plot& p) {
-  return detail::JsonObject()("kind", "plot")("id", p.claim)("title", p.title)("caption", p.caption)(
-             "style", p.bars ? "bars" : "curves")("x", p.x_label)("y", p.y_label)(
-             "log_x", p.log_x)("log_y", p.log_y)("curves", p.curves)
+  return detail::JsonObject()("kind", "plot")("id", p.claim)("title", p.title)(
+             "caption", p.caption)("style", p.bars ? "bars" : "curves")("x", p.x_label)(
+             "y", p.y_label)("log_x", p.log_x)("log_y", p.log_y)("curves", p.curves)
       .text();
 }
 inline std::string to_json(const Map& m) {

@@ -14,8 +14,9 @@ namespace crossbeam::verification {
 
 namespace claims {
 
-inline constexpr Claim shear_rest{"B-SHEAR-01", "Shear law", "At rest there is no stress and no energy",
-                                  "definition", "1e-14 of the modulus: rounding of the angle"};
+inline constexpr Claim shear_rest{"B-SHEAR-01", "Shear law",
+                                  "At rest there is no stress and no energy", "definition",
+                                  "1e-14 of the modulus: rounding of the angle"};
 inline constexpr Claim shear_gradient{"B-SHEAR-02", "Shear law",
                                       "The stress is the derivative of the energy",
                                       "Taylor remainders, slope 2; dual numbers",
@@ -23,15 +24,18 @@ inline constexpr Claim shear_gradient{"B-SHEAR-02", "Shear law",
 inline constexpr Claim shear_hessian{"B-SHEAR-03", "Shear law",
                                      "The Hessian is the derivative of the stress",
                                      "Taylor remainders, slope 2", "0.1 of the slope: next term"};
-inline constexpr Claim shear_energy{"B-SHEAR-04", "Shear law", "Shearing never costs less than rest",
-                                    "definition", "1e-15 of the modulus: rounding"};
+inline constexpr Claim shear_energy{"B-SHEAR-04", "Shear law",
+                                    "Shearing never costs less than rest", "definition",
+                                    "1e-15 of the modulus: rounding"};
 inline constexpr Claim shear_bound{
     "B-SHEAR-05", "Shear law", "The modulus bound holds: the critical time step is safe",
     "second differences of the energy over the angle, up to 0.8 rad", "1e-4: the difference"};
 
-inline constexpr Claim law_gradient{"B-LAW-01", "Membrane law", "The stress is the derivative of the energy",
+inline constexpr Claim law_gradient{"B-LAW-01", "Membrane law",
+                                    "The stress is the derivative of the energy",
                                     "Taylor remainders, slope 2", "0.1 of the slope: next term"};
-inline constexpr Claim law_tangent{"B-LAW-02", "Membrane law", "The tangent is the derivative of the stress",
+inline constexpr Claim law_tangent{"B-LAW-02", "Membrane law",
+                                   "The tangent is the derivative of the stress",
                                    "Taylor remainders, slope 2", "0.1 of the slope: next term"};
 inline constexpr Claim law_objectivity{
     "B-LAW-03", "Membrane law", "A rotation turns the Cauchy stress along and changes nothing else",
@@ -39,28 +43,31 @@ inline constexpr Claim law_objectivity{
 inline constexpr Claim law_balance{"B-LAW-04", "Membrane law",
                                    "The Cauchy stress is symmetric and lies in the membrane",
                                    "definition", "1e-13: rounding"};
-inline constexpr Claim law_rest{"B-LAW-05", "Membrane law", "At rest no stress, and never less energy",
-                                "definition", "1e-13 of the stiffness: rounding"};
+inline constexpr Claim law_rest{"B-LAW-05", "Membrane law",
+                                "At rest no stress, and never less energy", "definition",
+                                "1e-13 of the stiffness: rounding"};
 inline constexpr Claim law_stability{
     "B-LAW-06", "Membrane law", "The material is stable but for the compression that it carries",
     "acoustic tensor of random taut and slack states", "1e-4 of the stiffness: buckled yarns"};
-inline constexpr Claim law_lanes{"B-LAW-07", "Membrane law", "Every lane of a pack answers as the scalar",
-                                 "scalar run", "1e-11 of the stiffness: a lane may sweep on"};
+inline constexpr Claim law_lanes{"B-LAW-07", "Membrane law",
+                                 "Every lane of a pack answers as the scalar", "scalar run",
+                                 "1e-11 of the stiffness: a lane may sweep on"};
 
 }  // namespace claims
 
 /// A membrane law with an energy, a tangent and a status, as WovenMembrane is.
 template <class Law>
-concept ElasticMembraneLaw = MembraneLaw<Law, double> &&
-    requires(const Law& law, const FibreStrain<double>& b) {
-  { law.yarn_energy(law.evaluate(b)) } -> std::convertible_to<double>;
-  { law.hessian(law.evaluate(b)) } -> std::same_as<StrainHessian<double>>;
-  { law.evaluate(b).cell.status } -> std::convertible_to<CellStatus>;
-};
+concept ElasticMembraneLaw =
+    MembraneLaw<Law, double> && requires(const Law& law, const FibreStrain<double>& b) {
+      { law.yarn_energy(law.evaluate(b)) } -> std::convertible_to<double>;
+      { law.hessian(law.evaluate(b)) } -> std::same_as<StrainHessian<double>>;
+      { law.evaluate(b).cell.status } -> std::convertible_to<CellStatus>;
+    };
 
 namespace detail {
 
-inline FibreStrain<double> moved(const FibreStrain<double>& b, const Eigen::Vector3d& h, double eps) {
+inline FibreStrain<double> moved(const FibreStrain<double>& b, const Eigen::Vector3d& h,
+                                 double eps) {
   return {b.b11 + eps * h(0), b.b22 + eps * h(1), b.b12 + eps * h(2)};
 }
 inline FibreState<double> fibre_state(const FibreStrain<double>& b) {
@@ -91,8 +98,11 @@ void verify_shear_layer(Battery& battery, const Shear& shear, const FibreAngle<d
     const Eigen::Vector3d h = random.vector(1), g = gradient_at(b);
     const double W = shear.energy(fibre_state(b));
     const Eigen::Matrix3d H = matrix(shear.hessian(fibre_state(b)));
-    energy.see([&](double eps) { return shear.energy(fibre_state(moved(b, h, eps))) - W -
-                                        eps * g.dot(h); }, 1e-3, 1e-15 * G);
+    energy.see(
+        [&](double eps) {
+          return shear.energy(fibre_state(moved(b, h, eps))) - W - eps * g.dot(h);
+        },
+        1e-3, 1e-15 * G);
     stress.see([&](double eps) { return (gradient_at(moved(b, h, eps)) - g - eps * H * h).norm(); },
                1e-3, 1e-14 * G);
     deficit.see(-W / G, sample);
@@ -102,14 +112,15 @@ void verify_shear_layer(Battery& battery, const Shear& shear, const FibreAngle<d
     for (int i = 0; i < 3; ++i) duals.see(std::abs(by_duals.d[i] - g(i)) / G, sample);
   }
   energy.measure(battery, claims::shear_gradient, 0.1, "energy less its linear part: slope off 2");
-  battery.measure(claims::shear_gradient, duals, 1e-11, "dual numbers against the stress, relative");
+  battery.measure(claims::shear_gradient, duals, 1e-11,
+                  "dual numbers against the stress, relative");
   stress.measure(battery, claims::shear_hessian, 0.1, "stress less its linear part: slope off 2");
   battery.measure(claims::shear_energy, deficit, 1e-15, "largest deficit of energy, relative");
 
   // Energy over the angle at unit stretches, its first and second differences.
   const auto W = [&](double gamma) {
-    return shear.energy(fibre_state(fibre_strain<double>(
-        strain_of(1, 1, gamma, reference), fibre_from_cartesian(reference))));
+    return shear.energy(fibre_state(
+        fibre_strain<double>(strain_of(1, 1, gamma, reference), fibre_from_cartesian(reference))));
   };
   constexpr double step = 1e-3;
   Curve traction{"traction", {}, {}};
@@ -125,9 +136,15 @@ void verify_shear_layer(Battery& battery, const Shear& shear, const FibreAngle<d
   // [C-10]: the stiffness bound of the time step takes four times the modulus.
   battery.measure(claims::shear_bound, modulus / (4 * G), 1 + 1e-4,
                   "largest modulus over four times the bound");
-  battery.show(Plot{claims::shear_gradient.id, "Shear traction", "shear angle [deg]",
-                    "traction [kN/mm]", false, false, {traction},
-                    "Through zero, rising; odd for a balanced fabric.", false});
+  battery.show(Plot{claims::shear_gradient.id,
+                    "Shear traction",
+                    "shear angle [deg]",
+                    "traction [kN/mm]",
+                    false,
+                    false,
+                    {traction},
+                    "Through zero, rising; odd for a balanced fabric.",
+                    false});
 }
 
 /// A skew element in space and its image.
@@ -171,7 +188,8 @@ void verify_law_in_space(Battery& battery, const Law& law) {
     const Vector3<double> n = e.current.col(0).cross(e.current.col(1)).normalized();
     normal.see((before.second * n).norm() / S0, sample);
   }
-  battery.measure(claims::law_objectivity, stress, 1e-12, "second Piola-Kirchhoff stress, relative");
+  battery.measure(claims::law_objectivity, stress, 1e-12,
+                  "second Piola-Kirchhoff stress, relative");
   battery.measure(claims::law_objectivity, cauchy, 1e-12, "sigma against Q sigma Q^T, relative");
   battery.measure(claims::law_balance, symmetry, 1e-13, "sigma - sigma^T, relative");
   battery.measure(claims::law_balance, normal, 1e-13, "sigma n, relative");
@@ -198,8 +216,8 @@ void verify_law_stability(Battery& battery, const Law& law) {
       const double along = n.dot(r.S * n);
       const Matrix2<double> A =
           along * Matrix2<double>::Identity() + strain.transpose() * r.dS_dE * strain;
-      least = std::min({least, along, (A(0, 0) + A(1, 1)) / 2 -
-                                          std::hypot((A(0, 0) - A(1, 1)) / 2, A(0, 1))});
+      least = std::min(
+          {least, along, (A(0, 0) + A(1, 1)) / 2 - std::hypot((A(0, 0) - A(1, 1)) / 2, A(0, 1))});
     }
   }
   battery.measure(claims::law_stability, -least / static_cast<double>(law.stiffness_bound()), 1e-4,
@@ -228,17 +246,20 @@ void verify_law(Battery& battery, const Law& law) {
     const Eigen::Vector3d h = random.vector(1), g = gradient_at(b);
     const double W = energy_at(b);
     const Eigen::Matrix3d H = detail::matrix(law.hessian(law.evaluate(b)));
-    energy.see([&](double eps) {
-      return energy_at(detail::moved(b, h, eps)) - W - eps * g.dot(h);
-    }, 1e-3, 1e-17 * stiffness);
-    stress.see([&](double eps) {
-      return (gradient_at(detail::moved(b, h, eps)) - g - eps * H * h).norm();
-    }, 1e-3, 2e-16 * stiffness);
+    energy.see([&](double eps) { return energy_at(detail::moved(b, h, eps)) - W - eps * g.dot(h); },
+               1e-3, 1e-17 * stiffness);
+    stress.see(
+        [&](double eps) {
+          return (gradient_at(detail::moved(b, h, eps)) - g - eps * H * h).norm();
+        },
+        1e-3, 2e-16 * stiffness);
     deficit.see(-W / stiffness, sample);
     using P = Pack<double, 4>;
     const auto packed = law.stress(law.evaluate(FibreStrain<P>{P(b.b11), P(b.b22), P(b.b12)}));
     lanes.see(std::max({std::abs(packed.m11[3] - g(0)), std::abs(packed.m22[3] - g(1)),
-                        std::abs(2 * packed.m12[3] - g(2))}) / stiffness, sample);
+                        std::abs(2 * packed.m12[3] - g(2))}) /
+                  stiffness,
+              sample);
   }
   energy.measure(battery, claims::law_gradient, 0.1, "energy less its linear part: slope off 2");
   stress.measure(battery, claims::law_tangent, 0.1, "stress less its linear part: slope off 2");
@@ -246,10 +267,15 @@ void verify_law(Battery& battery, const Law& law) {
                   "stress at rest, relative");
   battery.measure(claims::law_rest, deficit, 1e-13, "largest deficit of energy, relative");
   battery.measure(claims::law_lanes, lanes, 1e-11, "stress of the lanes, relative");
-  battery.show(Plot{claims::law_gradient.id, "Taylor remainders of the membrane law", "step [strain]",
-                    "remainder [kN/mm]", true, true,
+  battery.show(Plot{claims::law_gradient.id,
+                    "Taylor remainders of the membrane law",
+                    "step [strain]",
+                    "remainder [kN/mm]",
+                    true,
+                    true,
                     {energy.curve("energy, slope 2"), stress.curve("stress, slope 2")},
-                    "Straight lines of slope 2 down to round-off.", false});
+                    "Straight lines of slope 2 down to round-off.",
+                    false});
   detail::verify_law_in_space(battery, law);
   detail::verify_law_stability(battery, law);
 }

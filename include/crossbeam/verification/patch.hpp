@@ -4,8 +4,8 @@
 /// edges, a quadratic law without a cell, and the border tractions of a homogeneous stress.
 
 #include "crossbeam/element/membrane.hpp"
-#include "crossbeam/dynamics/membrane_sweep.hpp"
-#include "crossbeam/mesh/nodal_state.hpp"
+#include "crossbeam/model/nodal_state.hpp"
+#include "crossbeam/sweep/membrane_sweep.hpp"
 #include "crossbeam/verification/random.hpp"
 
 #include <Eigen/Core>

@@ -24,7 +24,8 @@ inline Matrix2<double> strain_of(double stretch1, double stretch2, double shear,
 }
 
 /// Fibres -2..3 %, shear up to 0.5 rad, fibres at least 0.4 rad from falling together.
-inline FibreStrain<double> random_fibre_strain(Random& random, const FibreAngle<double>& reference) {
+inline FibreStrain<double> random_fibre_strain(Random& random,
+                                               const FibreAngle<double>& reference) {
   using std::numbers::pi;
   double shear = 0;
   do {

@@ -3,7 +3,7 @@
 /// A model as y' = F(t, y), for time integrators other than crossbeam's own: the same blocks, tools
 /// and kernels as the explicit scheme. Theory: docs/theory/reference.md, [R-1].
 
-#include "crossbeam/dynamics/model.hpp"
+#include "crossbeam/model/model.hpp"
 
 #include <Eigen/SparseCore>
 
@@ -160,8 +160,7 @@ class FirstOrderSystem {
   }
   [[nodiscard]] double damping_rate(int i) const {
     const int tool = i - 3 * model_.state.node_count;
-    return tool >= 0 ? model_.tools[free_tools_[tool]]->motion().damping_rate
-                     : model_.mass_damping;
+    return tool >= 0 ? model_.tools[free_tools_[tool]]->motion().damping_rate : model_.mass_damping;
   }
 
   Model<double>& model_;

@@ -5,280 +5,14 @@
 
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
-#include "crossbeam/contact/surface.hpp"
-#include "crossbeam/mesh/nodal_state.hpp"
-#include "crossbeam/mesh/tangent_entries.hpp"
+#include "crossbeam/contact/contact_law.hpp"
+#include "crossbeam/model/tool_contact.hpp"
+#include "crossbeam/tools/surface.hpp"
 
-#include <functional>
-#include <memory>
+#include <limits>
 #include <utility>
 
 namespace crossbeam {
-
-enum class Friction {
-  elastic_stick,  ///< elastic stick and return mapping onto Coulomb's cone, tag [F-2]
-  viscous,        ///< slip-rate regularised, impulse capped, tag [F-3]
-  smooth,         ///< slip-rate regularised without a kink or a cap, tag [F-6]
-};
-
-struct ContactParameters {
-  double penalty = 0.05;        ///< pressure per penetration [kN/mm^3]; > 0
-  double damping_ratio = 0.2;   ///< of a node's mass on its penalty spring [-]; >= 0
-  double friction = 0.2;        ///< Coulomb coefficient [-]; >= 0
-  Friction friction_model = Friction::elastic_stick;
-  double stick_ratio = 0.5;     ///< tangential over normal penalty [-]; > 0 (elastic stick)
-  double slip_speed = 0.04;     ///< speed of full friction [mm/ms]; > 0 (viscous, smooth)
-  double smoothing = 0;         ///< depth over which the penalty sets in [mm]; 0: at once, tag [F-5]
-  bool culling = true;          ///< skip packs of nodes that cannot have reached the tool
-  bool region_classes = true;   ///< ask the flat part of a tool for its height alone
-};
-
-inline void validate(const ContactParameters& p, const std::string& prefix = "contact") {
-  require_positive(prefix + ".penalty", p.penalty, "kN/mm^3");
-  require_non_negative(prefix + ".damping_ratio", p.damping_ratio, "-");
-  require_non_negative(prefix + ".friction", p.friction, "-");
-  require_positive(prefix + ".stick_ratio", p.stick_ratio, "-");
-  require_positive(prefix + ".slip_speed", p.slip_speed, "mm/ms");
-  require_non_negative(prefix + ".smoothing", p.smoothing, "mm");
-}
-
-/// How a tool moves along z: prescribed, or free under a given force.
-struct ToolMotion {
-  std::function<double(double)> position;  ///< z(t) [mm]; prescribed when set
-  std::function<double(double)> velocity;  ///< dz/dt [mm/ms]; only methods without steps ask for it
-  std::function<double(double)> force;     ///< applied F_z(t) [kN] of a free tool
-  double mass = 0;                         ///< of a free tool [kg]
-  double damping_rate = 0;                 ///< of a free tool [1/ms]
-  double start = 0;                        ///< z(0) of a free tool [mm]
-
-  static ToolMotion fixed() {
-    return {[](double) { return 0.0; }, [](double) { return 0.0; }, {}, 0, 0, 0};
-  }
-  static ToolMotion prescribed(std::function<double(double)> z,
-                               std::function<double(double)> velocity = {}) {
-    return {std::move(z), std::move(velocity), {}, 0, 0, 0};
-  }
-  static ToolMotion free_under(std::function<double(double)> F, double mass, double damping_rate,
-                               double start = 0) {
-    ToolMotion motion{{}, {}, std::move(F), mass, damping_rate, start};
-    validate(motion);
-    return motion;
-  }
-  [[nodiscard]] bool is_free() const { return !position; }
-
-  /// @throws InputError for a free tool without force or mass, and for a start that is no number
-  friend void validate(const ToolMotion& motion) {
-    if (!motion.is_free()) {
-      require_finite("tool.position(0)", motion.position(0), "mm");
-      return;
-    }
-    if (!motion.force)
-      throw InputError("tool.motion", "empty", "", "a position z(t), or a force F(t) and a mass");
-    require_positive("tool.mass", motion.mass, "kg");
-    require_non_negative("tool.damping_rate", motion.damping_rate, "1/ms");
-    require_finite("tool.start", motion.start, "mm");
-  }
-};
-
-/// Work done up to now [kN mm]; each entry counts in one place of the energy ledger only.
-struct ContactWork {
-  double tool = 0;      ///< of a prescribed tool on the fabric, or of the force applied to a free one
-  double friction = 0;  ///< taken by friction (its elastic stick included)
-  double damping = 0;   ///< taken by contact and tool damping
-};
-
-/// How often packs of nodes were asked by a tool, by what was spent on them.
-struct PackVisits {
-  long long culled = 0;   ///< nothing: they cannot have reached the tool
-  long long flat = 0;     ///< the height of its flat part
-  long long general = 0;  ///< all of its surface
-
-  [[nodiscard]] long long all() const { return culled + flat + general; }
-  PackVisits& operator+=(const PackVisits& other) {
-    culled += other.culled;
-    flat += other.flat;
-    general += other.general;
-    return *this;
-  }
-  friend bool operator==(const PackVisits&, const PackVisits&) = default;
-};
-
-/// The tool as the time integration sees it.
-template <class R>
-class ToolContact {
- public:
-  virtual ~ToolContact() = default;
-
-  /// @throws InputError (validate)
-  explicit ToolContact(ToolMotion motion) : motion_(std::move(motion)) {
-    validate(motion_);
-    now_.z = motion_.is_free() ? motion_.start : motion_.position(0);
-  }
-
-  /// Contact forces at t_n: adds them to state.f and keeps them for the bookkeeping.
-  /// @param travel upper bound of the distance any node or this tool has moved since the start
-  void add_forces(NodalState<R>& state, double dt, double travel) {
-    begin_forces(1);
-    add_forces(state, dt, travel, {0, state.node_count, 0});
-    end_forces();
-  }
-  /// Books the work of the step's forces with the velocities a v_n + b v_{n+1/2}, over a time
-  /// `weight`; after the nodes have moved.
-  void book(const NodalState<R>& state, double a, double b, double weight) {
-    book_nodes(state, a, b, {0, state.node_count, 0});
-    book_tool(a, b, weight);
-  }
-
-  /// @name The same for a part of the nodes at a time, all of which have to be asked for once. Parts
-  /// may be asked for by several threads; what they sum up is added in their order, tag [S-5].
-  /// @{
-  /// Several steps may be in flight, tag [S-6]: `flight` 0, 1, ... counts them, each is begun where
-  /// `advance` has taken the tool before, and they end in their order.
-  struct Part {
-    int first, last;  ///< nodes: multiples of the pack width, or the node count
-    int number;       ///< 0 to parts - 1
-    int flight = 0;
-  };
-  /// A step's forces in the making.
-  virtual void begin_forces(int parts, int flight = 0) {
-    if (static_cast<int>(flights_.size()) <= flight) flights_.resize(flight + 1);
-    flights_[flight].at = now_;
-    flights_[flight].parts.assign(static_cast<std::size_t>(parts), {});
-  }
-  virtual void add_forces(NodalState<R>& state, double dt, double travel, const Part& part) = 0;
-  /// Sums of the forces of all parts.
-  void end_forces(int flight = 0) {
-    force_ = {};
-    stored_ = 0;
-    for (const PartSums& p : flights_[flight].parts) {
-      force_ = force_ + p.force;
-      stored_ += p.stored;
-      visits_ += p.visits;
-    }
-  }
-  /// Power of the forces on these nodes, for book_tool.
-  virtual void book_nodes(const NodalState<R>& state, double a, double b, const Part& part) = 0;
-  /// Books the nodes' powers and the work at the tool itself; after `advance`.
-  void book_tool(double a, double b, double weight, int flight = 0) {
-    const Kinematics& tool = flights_[flight].after;
-    const double v = tool.velocity(a, b);
-    double friction = 0, damping = 0;
-    // Against the tool: its velocity is taken off all nodes at once.
-    for (const PartSums& p : flights_[flight].parts) {
-      friction += p.friction_power - p.friction_z * v;
-      damping += p.damping_power - p.damping_z * v;
-    }
-    work_.friction -= friction * weight;
-    work_.damping -= damping * weight;
-    if (motion_.is_free()) {
-      work_.tool += applied_ * v * weight;
-      work_.damping +=
-          motion_.mass * motion_.damping_rate * (tool.v_minus + tool.v_plus) / 2 * v * weight;
-    } else {
-      work_.tool += force_.z * v * weight;
-    }
-  }
-  /// @}
-  [[nodiscard]] double stored_energy() const { return stored_; }
-  /// Contact pressure of every node [kN/mm^2].
-  virtual void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const = 0;
-  /// Bound of this contact's share in the squared frequency of fabric and tool [1/ms^2], tag [D-3].
-  /// @param area of the whole fabric [mm^2]: no more than that can rest on the tool
-  [[nodiscard]] virtual double omega_squared(double areal_mass, double area) const = 0;
-  /// Bound of its share in the damping rate c/m [1/ms].
-  [[nodiscard]] virtual double damping_rate(double areal_mass, double area) const = 0;
-  /// Whether these forces are a function of positions and velocities alone: no step, no memory.
-  [[nodiscard]] virtual bool is_rate_form() const = 0;
-  /// Adds -df/dx and -df/dv of a contact in rate form at state.x, state.v, tag.
-  /// @param tool_row row of this tool where it is free, else -1
-  virtual void add_tangent(const NodalState<R>& state, int tool_row, TangentEntries& tangent) const = 0;
-
-  /// @name Statics: the forces at rest, tag
-  /// @{
-  /// Positions from which the elastic stick is stretched further by what comes: those of its last
-  /// step.
-  virtual void come_to_rest(const NodalState<R>& state) = 0;
-  /// Forces at rest at state.x, with their tangent on request. @return force on the fabric along z
-  virtual double add_rest_forces(NodalState<R>& state, int tool_row, TangentEntries* tangent) const = 0;
-  /// @}
-
-  /// Moves the tool from t_n to t_{n+1}: before book, and a free one after end_forces.
-  /// @return distance moved [mm]
-  double advance(double t, double dt, int flight = 0) {
-    Kinematics& tool = now_;
-    tool.v_minus = tool.v_plus;
-    if (motion_.is_free()) {
-      applied_ = motion_.force(t);
-      const double a = motion_.damping_rate;
-      // At rest at t = 0: v_{-1/2} as for the nodes.
-      if (!moved_) tool.v_minus = -dt / 2 * (applied_ - force_.z) / motion_.mass;
-      tool.v_plus = ((1 - a * dt / 2) * tool.v_minus + dt * (applied_ - force_.z) / motion_.mass) /
-                    (1 + a * dt / 2);
-      tool.z += dt * tool.v_plus;
-    } else {
-      const double z = motion_.position(t + dt);
-      tool.v_plus = (z - tool.z) / dt;
-      if (!moved_) tool.v_minus = tool.v_plus;
-      tool.z = z;
-    }
-    moved_ = true;
-    flights_[flight].after = tool;
-    return std::abs(tool.v_plus) * dt;
-  }
-
-  /// Forgets what is known about clearances: `travel` begins anew.
-  virtual void reset_culling() = 0;
-
-  /// Puts the tool to a place and a velocity, for methods that keep their own time: the next
-  /// add_forces takes both as those of its instant.
-  void place(double z, double velocity) {
-    now_ = {z, velocity, velocity};
-  }
-
-  [[nodiscard]] const ToolMotion& motion() const { return motion_; }
-  [[nodiscard]] double position() const { return now_.z; }
-  [[nodiscard]] double velocity() const { return now_.v_plus; }
-  [[nodiscard]] const ContactWork& work() const { return work_; }
-  /// Kinetic energy of a free tool at t_n, as v_{n-1/2} v_{n+1/2} m/2; after advance.
-  [[nodiscard]] double kinetic_energy() const { return motion_.mass * now_.v_minus * now_.v_plus / 2; }
-  /// In all evaluations of the forces up to now.
-  [[nodiscard]] const PackVisits& visits() const { return visits_; }
-  /// Sum of the forces on the fabric at t_n [kN].
-  [[nodiscard]] const Vec3<double>& force_on_fabric() const { return force_; }
-
- protected:
-  struct Kinematics {
-    double z = 0;                    ///< position [mm]
-    double v_minus = 0, v_plus = 0;  ///< velocities of the last but one half step and the last
-    /// Velocity predicted for t_n, before `advance`, as that of the nodes, tag [D-2].
-    [[nodiscard]] double predicted_velocity() const { return 1.5 * v_plus - 0.5 * v_minus; }
-    /// Velocity that goes with the node velocities a v_n + b v_{n+1/2} (book), after `advance`.
-    [[nodiscard]] double velocity(double a, double b) const {
-      return a * (v_minus + v_plus) / 2 + b * v_plus;
-    }
-  };
-  struct PartSums {
-    Vec3<double> force{};
-    double stored = 0;
-    PackVisits visits;
-    /// Powers of the forces booked last, and the forces along z.
-    double friction_power = 0, friction_z = 0, damping_power = 0, damping_z = 0;
-  };
-  struct Flight {
-    Kinematics at, after;  ///< at t_n, and at t_{n+1}
-    std::vector<PartSums> parts;
-  };
-
-  ToolMotion motion_;
-  ContactWork work_;
-  Kinematics now_;
-  double applied_ = 0;
-  bool moved_ = false;
-  Vec3<double> force_{};
-  double stored_ = 0;
-  PackVisits visits_;
-  std::vector<Flight> flights_;
-};
 
 /// Contact with a tool of a given shape. T is the pack the sweep runs on.
 template <class T, class Shape>
@@ -394,7 +128,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     return parameters_.friction == 0 || parameters_.friction_model == Friction::smooth;
   }
 
-  void add_tangent(const NodalState<R>& state, int tool_row, TangentEntries& tangent) const override {
+  void add_tangent(const NodalState<R>& state, int tool_row,
+                   TangentEntries& tangent) const override {
     using D = Dual<R, 6>;  // position and velocity of the node against the tool
     for (int n = 0; n < state.node_count; ++n) {
       Vec3<D> p, v;
@@ -428,7 +163,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       std::fill(stick_.x.begin(), stick_.x.end(), R(0));
   }
 
-  double add_rest_forces(NodalState<R>& state, int tool_row, TangentEntries* tangent) const override {
+  double add_rest_forces(NodalState<R>& state, int tool_row,
+                         TangentEntries* tangent) const override {
     using D = Dual<R, 3>;
     double sum = 0;
     for (int n = 0; n < state.node_count; ++n) {
@@ -443,7 +179,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       if (parameters_.friction_model == Friction::elastic_stick) {
         const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
                          D(xi0.z) + p.z - D(x0.z)};
-        force = force + stick_friction<false>(xi, at.normal, k, none, Vec3<D>{}, normal.pressure).force;
+        force =
+            force + stick_friction<false>(xi, at.normal, k, none, Vec3<D>{}, normal.pressure).force;
       }
       const Vec3<R> f{force.x.value, force.y.value, force.z.value};
       state.f.set(n, state.f.get(n) + f);
@@ -511,9 +248,10 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       t = smooth_friction(slip<Flat>(v_now, step.velocity_now, at.normal), normal.pressure);
     } else if (parameters_.friction_model == Friction::elastic_stick) {
       const Vec3<T> slip_rate = slip<Flat>(v_half, step.velocity, at.normal);
-      const T c = minimum(T(static_cast<R>(2 * parameters_.damping_ratio *
-                                           std::sqrt(parameters_.stick_ratio))) * root,
-                          m * step.half_over_dt);
+      const T c = minimum(
+          T(static_cast<R>(2 * parameters_.damping_ratio * std::sqrt(parameters_.stick_ratio))) *
+              root,
+          m * step.half_over_dt);
       const Stick<T> stick = stick_friction<Flat>(xi + step.slip_time * slip_rate, at.normal, k, c,
                                                   slip_rate, normal.pressure);
       t = select_lanes(touching, stick.force);
@@ -670,7 +408,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   AlignedArray<R> normal_;   // normal force on the node, pressure positive [kN]
   std::vector<double> safe_until_;
   std::vector<char> active_;
-  NodeVectors<double> rest_; // positions where statics began
+  NodeVectors<double> rest_;  // positions where statics began
   double rest_z_ = 0;
   bool started_ = false, at_start_ = true;
 };

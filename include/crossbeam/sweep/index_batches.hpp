@@ -5,6 +5,7 @@
 /// stores whole packs; elsewhere it gathers. One mesh type therefore serves both.
 /// Theory: docs/theory/sweep.md.
 
+#include "crossbeam/base/simd.hpp"
 #include "crossbeam/mesh/arrays.hpp"
 
 #include <algorithm>
@@ -56,8 +57,7 @@ class IndexBatches {
   };
   static constexpr int reach = 8;
   /// Places of a run, at most.
-  static constexpr int run_capacity =
-      std::max(lanes, 256 / Columns / lanes * lanes);
+  static constexpr int run_capacity = std::max(lanes, 256 / Columns / lanes * lanes);
 
   IndexBatches() = default;
   explicit IndexBatches(const std::vector<std::array<int, Columns>>& tuples) {
@@ -80,7 +80,8 @@ class IndexBatches {
         batch.held = all_lanes >> (lanes - some);
         batch.gather_row = static_cast<int>(table_.size()) / (Columns * lanes);
         for (int c = 0; c < Columns; ++c)
-          for (int l = 0; l < lanes; ++l) table_.push_back(tuples[begin + std::min(l, some - 1)][c]);
+          for (int l = 0; l < lanes; ++l)
+            table_.push_back(tuples[begin + std::min(l, some - 1)][c]);
       }
       batch.first_tuple = begin;
       if (!batch.is_full()) {
@@ -115,9 +116,8 @@ class IndexBatches {
   void arrange(const std::vector<int>& level_start) {
     const auto level = [&](int node) {
       if (level_start.empty()) return 0;
-      return static_cast<int>(
-          std::upper_bound(level_start.begin() + 1, level_start.end(), node) -
-          (level_start.begin() + 1));
+      return static_cast<int>(std::upper_bound(level_start.begin() + 1, level_start.end(), node) -
+                              (level_start.begin() + 1));
     };
     const int levels = level_start.empty() ? 1 : static_cast<int>(level_start.size()) - 1;
     const auto stage = [&](int b) {
@@ -305,191 +305,6 @@ class IndexBatches {
   AlignedArray<R> masks_;  // one row of ones; the rows of batches that are not full
   std::vector<Run> runs_;
   std::vector<int> stage_runs_;  // first run of every stage, and their count
-};
-
-/// Vectors of the tuples of one run until its nodes get them, line by line: a node that several tuples
-/// touch is then read and written once, and no load overtakes a store that it overlaps.
-/// @tparam Vectors one for each column, or 1
-template <int Vectors, int Columns, class T>
-class RunVectors {
- public:
-  using R = real_t<T>;
-  using Batches = IndexBatches<Columns, T>;
-  using Run = typename Batches::Run;
-  static constexpr int lanes = lanes_v<T>;
-  static_assert(Vectors == Columns || Vectors == 1);
-
-  RunVectors() {
-    for (auto& vector : number_)
-      for (auto& component : vector) clear<front>(component);
-  }
-
-  /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
-  template <class U>
-  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t tuple, const Vec3<U>& v) {
-    v.x.store(number_[vector][0] + front + tuple);
-    v.y.store(number_[vector][1] + front + tuple);
-    v.z.store(number_[vector][2] + front + tuple);
-  }
-  /// Zeros in the lanes without a tuple.
-  /// @param vectors the first ones; @param tuple place of lane 0 in the run
-  template <class Mask>
-  void rest(int vectors, std::ptrdiff_t tuple, const Mask& active) {
-    for (int k = 0; k < vectors; ++k)
-      for (auto& component : number_[k]) {
-        R* const at = component + front + tuple;
-        select(active, T::load(at), T(R(0))).store(at);
-      }
-  }
-
-  /// a[node of column k] -= vector k.
-  void subtract_from(NodeVectors<R>& a, const Batches& batches, const Run& run) {
-    if (!run.contiguous)
-      batches.subtract_gathered(a, run, [&](int k, int c) { return number_[k][c] + front; });
-    else
-      subtract_lines<false>(a, batches, run, {});
-  }
-  /// a[node of column k] -= weight[component][k] times the one vector.
-  void subtract_from(NodeVectors<R>& a, const Batches& batches, const Run& run,
-                     const std::array<R, Columns> (&weight)[3]) {
-    subtract_lines<true>(a, batches, run, weight);
-  }
-
- private:
-  static constexpr int reach = Batches::reach;
-  // Loads reach up to `reach` numbers before the first and a pack beyond the last.
-  static constexpr int front = std::max(reach, lanes), back = std::max(reach, lanes) + lanes;
-  static constexpr int size = front + Batches::run_capacity + back;
-
-  template <int Count>
-  CROSSBEAM_INLINE static void clear(R* from) {
-    unrolled<Count / lanes>([&](auto i) CROSSBEAM_INLINE_LAMBDA { T(R(0)).store(from + i * lanes); });
-  }
-
-  template <bool Weighted>
-  void subtract_lines(NodeVectors<R>& a, const Batches& batches, const Run& run,
-                      const std::array<R, Columns> (&weight)[3]) {
-    const int end = front + run.batches * lanes;
-    for (auto& vector : number_)
-      for (auto& component : vector) clear<back>(component + end);
-    const auto& first = batches.first(run);
-    for (int line = 0, k = 0; line < run.lines; k = run.line_end[line++]) {
-      R* const out[3] = {a.x.data(), a.y.data(), a.z.data()};
-      const Line to{{out[0] + first[run.column[k]], out[1] + first[run.column[k]],
-                     out[2] + first[run.column[k]]},
-                    run.length + run.shift[run.line_end[line] - 1]};
-      switch (run.line_end[line] - k) {
-        case 1: line_of<Weighted, 1>(to, run, k, 1, weight); break;
-        case 2: line_of<Weighted, 2>(to, run, k, 2, weight); break;
-        case 3: line_of<Weighted, 3>(to, run, k, 3, weight); break;
-        default: line_of<Weighted, 0>(to, run, k, run.line_end[line] - k, weight);
-      }
-    }
-  }
-
-  struct Line {
-    R* component[3];
-    int nodes;
-  };
-
-  /// @tparam Count columns of the line, or 0: `columns` of them
-  template <bool Weighted, int Count>
-  CROSSBEAM_INLINE void line_of(const Line& to, const Run& run, int begin, int columns,
-                                const std::array<R, Columns> (&weight)[3]) const {
-    constexpr int most = Count > 0 ? Count : Columns;
-    const int many = Count > 0 ? Count : columns;
-    const R* from[most] = {};
-    T w[3][most];
-    for (int k = 0; k < many; ++k) {
-      const int column = run.column[begin + k];
-      from[k] = number_[Vectors == 1 ? 0 : column][0] + front - run.shift[begin + k];
-      if constexpr (Weighted)
-        for (int c = 0; c < 3; ++c) w[c][k] = T(weight[c][column]);
-    }
-    R* const out[3] = {to.component[0], to.component[1], to.component[2]};
-    const auto sum = [&](auto c, int i) CROSSBEAM_INLINE_LAMBDA {
-      const auto term = [&](int k) CROSSBEAM_INLINE_LAMBDA {
-        const T f = T::load(from[k] + c * size + i);
-        if constexpr (Weighted)
-          return w[c][k] * f;
-        else
-          return f;
-      };
-      T total = term(0);
-      for (int k = 1; k < many; ++k) total = total + term(k);
-      return total;
-    };
-    int i = 0;
-    for (; i + lanes <= to.nodes; i += lanes)
-      unrolled<3>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        (T::load(out[c] + i) - sum(c, i)).store(out[c] + i);
-      });
-    // The nodes behind may be another thread's: they are not even written with what they had.
-    if (i < to.nodes)
-      unrolled<3>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        const T rest = sum(c, i);
-        for (int lane = 0; lane < to.nodes - i; ++lane) out[c][i + lane] -= rest[lane];
-      });
-  }
-
-  alignas(64) R number_[Vectors][3][size];
-};
-
-/// Constants of the tuples in the order of the lanes: component c of batch b is one pack.
-template <class T>
-class LaneArray {
- public:
-  using R = real_t<T>;
-  LaneArray() = default;
-  LaneArray(int batches, int components)
-      : batches_(batches),
-        components_(components),
-        stride_(static_cast<std::size_t>(components) * lanes_v<T>),
-        data_(static_cast<std::size_t>(batches) * stride_) {}
-
-  /// Keeps one tuple's constants where all agree but for the rounding of the mesh's coordinates:
-  /// a regular mesh then streams no constants, tag [S-2].
-  /// @param scale size that a component's differences are compared with
-  /// @param counts whether a lane of a batch does
-  template <class Scale, class Counts>
-  void collapse_if_uniform(const Scale& scale, const Counts& counts) {
-    if (batches_ == 0) return;
-    const R tolerance = std::max(R(1e-11), 2 * std::numeric_limits<R>::epsilon());
-    for (int b = 0; b < batches_; ++b)
-      for (int c = 0; c < components_; ++c)
-        for (int l = 0; l < lanes_v<T>; ++l)
-          if (counts(b, l) && !(std::abs(at(b, c, l) - at(0, c, 0)) <= tolerance * scale(c))) return;
-    for (int c = 0; c < components_; ++c)
-      for (int l = 0; l < lanes_v<T>; ++l) at(0, c, l) = at(0, c, 0);
-    data_.resize(stride_);
-    data_.shrink_to_fit();
-    stride_ = 0;
-  }
-  [[nodiscard]] bool is_uniform() const { return stride_ == 0; }
-
-  CROSSBEAM_INLINE T load(int batch, int component) const {
-    return T::load(data_.data() + offset(batch, component));
-  }
-  CROSSBEAM_INLINE void store(int batch, int component, const T& value) {
-    value.store(data_.data() + offset(batch, component));
-  }
-  /// Numbers of one batch; those of the next begin `stride` further on.
-  [[nodiscard]] CROSSBEAM_INLINE const R* data(int batch) const {
-    return data_.data() + static_cast<std::size_t>(batch) * stride_;
-  }
-  [[nodiscard]] CROSSBEAM_INLINE R* data(int batch) {
-    return data_.data() + static_cast<std::size_t>(batch) * stride_;
-  }
-  [[nodiscard]] CROSSBEAM_INLINE std::size_t stride() const { return stride_; }
-  R& at(int batch, int component, int lane) { return data_[offset(batch, component) + lane]; }
-
- private:
-  [[nodiscard]] CROSSBEAM_INLINE std::size_t offset(int batch, int component) const {
-    return static_cast<std::size_t>(batch) * stride_ + static_cast<std::size_t>(component) * lanes_v<T>;
-  }
-  int batches_ = 0, components_ = 0;
-  std::size_t stride_ = 0;  // numbers of one batch; 0 where one batch serves all
-  AlignedArray<R> data_;
 };
 
 }  // namespace crossbeam

@@ -3,7 +3,7 @@
 /// The blank holder: a flat ring with a stadium-shaped opening and a rounded inner edge.
 /// Theory: docs/theory/tools.md.
 
-#include "crossbeam/contact/surface.hpp"
+#include "crossbeam/tools/surface.hpp"
 
 namespace crossbeam {
 
@@ -71,8 +71,7 @@ class StadiumRing {
   template <class T>
   CROSSBEAM_INLINE auto in_flat_part(const Vec3<T>& p) const {
     const T beyond = maximum(magnitude(p.y) - T(parameters_.centre_distance), T(R(0)));
-    return (p.x * p.x + beyond * beyond >= T(flat_squared_)) &&
-           (p.z > T(-parameters_.edge_radius));
+    return (p.x * p.x + beyond * beyond >= T(flat_squared_)) && (p.z > T(-parameters_.edge_radius));
   }
   template <class T>
   CROSSBEAM_INLINE SurfaceGap<T> flat_gap(const Vec3<T>& p) const {

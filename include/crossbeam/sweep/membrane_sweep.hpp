@@ -4,11 +4,13 @@
 /// -> law -> generalised forces -> corners. Theory: docs/theory/sweep.md.
 
 #include "crossbeam/base/simd.hpp"
-#include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/membrane.hpp"
-#include "crossbeam/dynamics/membrane_tangent.hpp"
-#include "crossbeam/dynamics/point_rows.hpp"
-#include "crossbeam/mesh/batches.hpp"
+#include "crossbeam/model/force_block.hpp"
+#include "crossbeam/sweep/index_batches.hpp"
+#include "crossbeam/sweep/lane_array.hpp"
+#include "crossbeam/sweep/membrane_tangent.hpp"
+#include "crossbeam/sweep/point_rows.hpp"
+#include "crossbeam/sweep/run_vectors.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -35,22 +37,21 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   static constexpr int M = Element::membrane_vectors;
   static constexpr int K = Element::vectors;
   static constexpr int corners = Element::corners;
-  static constexpr int point_size = 2 * M + 2;  ///< constants of one point: t1, t2, weight, viscosity
+  static constexpr int point_size =
+      2 * M + 2;  ///< constants of one point: t1, t2, weight, viscosity
   /// A cell without a potential has its yarn work summed along the path instead.
-  static constexpr bool has_energy = requires(const Law& law, const FibreStrain<T>& b) {
-    law.yarn_energy(law.evaluate(b));
-  };
+  static constexpr bool has_energy =
+      requires(const Law& law, const FibreStrain<T>& b) { law.yarn_energy(law.evaluate(b)); };
 
   static constexpr bool has_tangent = requires(const Law& law, const FibreStrain<T>& b) {
     { law.hessian(law.evaluate(b)) } -> std::same_as<StrainHessian<T>>;
   };
 
   /// Whether the law keeps the heights of its cells from step to step.
-  static constexpr bool follows =
-      requires {
-        requires Law::follows_heights;
-        typename Law::template CellSolution<T>;
-      };
+  static constexpr bool follows = requires {
+    requires Law::follows_heights;
+    typename Law::template CellSolution<T>;
+  };
 
   /// A law of one's own need not have a cell; then there is nothing of a cell to sample.
   static constexpr bool has_cell = requires(const Law& law) { law.cell().parameters(); };
@@ -60,7 +61,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
                 const MembraneOptions& options = {})
       : law_(std::move(law)),
         batches_(mesh.elements),
-        constants_(batches_.size(), Element::points * point_size + (Element::has_hourglass ? 3 : 0)),
+        constants_(batches_.size(),
+                   Element::points * point_size + (Element::has_hourglass ? 3 : 0)),
         previous_(has_energy ? 0 : batches_.size(), has_energy ? 0 : Element::points * 4),
         heights_(follows ? batches_.size() : 0, follows ? Element::points * 2 : 0),
         element_count_(mesh.element_count()) {
@@ -73,10 +75,11 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       const double difference =
           std::abs(mesh.fibre_angle(e) - static_cast<double>(law_.reference().delta));
       if (difference > 1e-6)
-        throw InputError("mesh.fibres[" + std::to_string(e) + "] angle from warp to weft",
-                         detail::to_text(mesh.fibre_angle(e) * 180 / std::numbers::pi), "deg",
-                         "the law's " + detail::to_text(static_cast<double>(law_.reference().delta) *
-                                                        180 / std::numbers::pi));
+        throw InputError(
+            "mesh.fibres[" + std::to_string(e) + "] angle from warp to weft",
+            detail::to_text(mesh.fibre_angle(e) * 180 / std::numbers::pi), "deg",
+            "the law's " + detail::to_text(static_cast<double>(law_.reference().delta) * 180 /
+                                           std::numbers::pi));
       const double omega_squared = element_omega_squared(mesh, e, stiffness, areal_mass);
       if (!std::isfinite(omega_squared))
         throw InputError("squared frequency of mesh.elements[" + std::to_string(e) + "]",
@@ -239,8 +242,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     law_.cell().follow(at.u1, at.u2, heights);
     const T off1 = magnitude(heights.w1 - at.cell.forces.w1);
     const T off2 = magnitude(heights.w2 - at.cell.forces.w2);
-    s.cell_correction =
-        std::max({s.cell_correction, static_cast<double>(off1[lane]), static_cast<double>(off2[lane])});
+    s.cell_correction = std::max(
+        {s.cell_correction, static_cast<double>(off1[lane]), static_cast<double>(off2[lane])});
   }
 
   static Vec3<double> lane_of(const Vec3<T>& v, int lane) {
@@ -347,8 +350,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
           work.rest(k * lanes, batches_.active(batch));
       stresses(law, run, p, work, sums);
       if constexpr (Viscous)
-        viscous_stresses(batches_.template view<T>(state.v_predicted, run, work.velocities), run, p, work,
-                         power);
+        viscous_stresses(batches_.template view<T>(state.v_predicted, run, work.velocities), run, p,
+                         work, power);
       collect_forces(run, p, work);
     }
     work.corner.subtract_from(state.f, batches_, run);
@@ -411,8 +414,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         if constexpr (Element::has_hourglass) {
           if (has_hourglass) {
             Vec3<T> q = D[2];
-            if (skewed_)
-              q = q - (c.load(hourglass_at) * D[0] + c.load(hourglass_at + 1) * D[1]);
+            if (skewed_) q = q - (c.load(hourglass_at) * D[0] + c.load(hourglass_at + 1) * D[1]);
             work.hourglass.store(i, hourglass * c.load(hourglass_at + 2) * q);
           }
         } else if constexpr (Element::points > 1 && std::is_same_v<R, double>) {
@@ -443,9 +445,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       point_forces(kinematics, m, c.point(), force);
       if constexpr (Element::points > 1) {
         if (p > 0)
-          unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA {
-            force[v] = work.force[v].load(i) + force[v];
-          });
+          unrolled<K>([&](auto v)
+                          CROSSBEAM_INLINE_LAMBDA { force[v] = work.force[v].load(i) + force[v]; });
         if (p + 1 < Element::points) {
           unrolled<K>([&](auto v) CROSSBEAM_INLINE_LAMBDA { work.force[v].store(i, force[v]); });
           continue;
@@ -535,8 +536,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       Vec3<T> D[K];
       relative_vectors(state.x, batches_[b], D);
       for (int p = 0; p < Element::points; ++p) {
-        const auto at = law_.evaluate(
-            strain(PointKinematics<T, M, K>(D, load_point(b, p)), batches_[b]));
+        const auto at =
+            law_.evaluate(strain(PointKinematics<T, M, K>(D, load_point(b, p)), batches_[b]));
         heights_.store(b, 2 * p, at.cell.forces.w1);
         heights_.store(b, 2 * p + 1, at.cell.forces.w2);
       }
@@ -575,8 +576,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   }
 
   CROSSBEAM_INLINE Vec3<T> hourglass_vector(int b, const Vec3<T> (&D)[K]) const {
-    return D[2] - (constants_.load(b, hourglass_at) * D[0] +
-                   constants_.load(b, hourglass_at + 1) * D[1]);
+    return D[2] -
+           (constants_.load(b, hourglass_at) * D[0] + constants_.load(b, hourglass_at + 1) * D[1]);
   }
   CROSSBEAM_INLINE T hourglass_stiffness(int b) const {
     return T(hourglass_) * constants_.load(b, hourglass_at + 2);

@@ -3,7 +3,7 @@
 /// A height field as a biquadratic B-spline on a uniform grid: the form in which a drape asks for
 /// its tools, once per node and step. Theory: docs/theory/tools.md.
 
-#include "crossbeam/contact/surface.hpp"
+#include "crossbeam/tools/surface.hpp"
 
 #include <cstddef>
 #include <limits>

@@ -3,7 +3,7 @@
 /// The energy ledger of an explicit run: every force's work is booked once. Theory:
 /// docs/theory/dynamics.md, [D-4].
 
-#include "crossbeam/dynamics/force_block.hpp"
+#include "crossbeam/model/force_block.hpp"
 
 #include <cmath>
 
@@ -13,13 +13,13 @@ namespace crossbeam {
 /// not from summed work: the residual therefore sees a force that is not the gradient of its
 /// energy.
 struct EnergyLedger {
-  double time = 0;           ///< [ms]
+  double time = 0;            ///< [ms]
   InternalEnergy internal{};  ///< yarn, shear, bending, hourglass; bulk viscosity's share
-  double contact = 0;        ///< stored in the penalties
-  double kinetic = 0;        ///< nodes and free tools
+  double contact = 0;         ///< stored in the penalties
+  double kinetic = 0;         ///< nodes and free tools
   double friction = 0, contact_damping = 0, mass_damping = 0;
-  double external = 0;       ///< work of prescribed tools and of forces on free tools
-  double initial = 0;        ///< total energy at the start
+  double external = 0;  ///< work of prescribed tools and of forces on free tools
+  double initial = 0;   ///< total energy at the start
 
   /// What was put in minus what is accounted for.
   [[nodiscard]] double residual() const {

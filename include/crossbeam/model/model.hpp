@@ -3,8 +3,8 @@
 /// The model in space: nodes, force blocks and tools, before anything is said about time. The
 /// explicit scheme, the first-order system for other integrators and the statics all take one.
 
-#include "crossbeam/contact/tool_contact.hpp"
-#include "crossbeam/dynamics/force_block.hpp"
+#include "crossbeam/model/force_block.hpp"
+#include "crossbeam/model/tool_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,8 +69,8 @@ struct Model {
   void require_no_memory() const {
     for (std::size_t k = 0; k < blocks.size(); ++k)
       if (blocks[k]->has_memory())
-        throw InputError("blocks[" + std::to_string(k) + "] cells", "followed from step to step", "",
-                         "solved anew at every evaluation, which is what this method can use");
+        throw InputError("blocks[" + std::to_string(k) + "] cells", "followed from step to step",
+                         "", "solved anew at every evaluation, which is what this method can use");
   }
 
   /// Bound of the critical step [ms], tag [D-3]: all stiffnesses together with the fabric's

@@ -21,16 +21,16 @@ struct NodeConstraint {
 template <class R>
 struct NodalState {
   int node_count = 0;
-  NodeVectors<double> x;   ///< positions x_n [mm]; kernels get their differences, tag [D-6]
-  NodeVectors<R> v;        ///< velocities v_{n-1/2} [mm/ms]
+  NodeVectors<double> x;  ///< positions x_n [mm]; kernels get their differences, tag [D-6]
+  NodeVectors<R> v;       ///< velocities v_{n-1/2} [mm/ms]
   /// Velocities predicted for t_n from v_{n-1/2} and the last acceleration, of second order,
   /// 2 v_{n-1/2} - v_{n-1}, tag [D-2] [mm/ms]
   NodeVectors<R> v_predicted;
-  NodeVectors<R> f;        ///< forces f_n [kN]
-  NodeVectors<R> free;     ///< 1 where a component may move, 0 where it is fixed
-  AlignedArray<R> mass;    ///< [kg]; 0 in the padding
+  NodeVectors<R> f;              ///< forces f_n [kN]
+  NodeVectors<R> free;           ///< 1 where a component may move, 0 where it is fixed
+  AlignedArray<R> mass;          ///< [kg]; 0 in the padding
   AlignedArray<R> inverse_mass;  ///< [1/kg]; 0 in the padding
-  AlignedArray<R> area;    ///< tributary reference area [mm^2]; 0 in the padding
+  AlignedArray<R> area;          ///< tributary reference area [mm^2]; 0 in the padding
 
   NodalState() = default;
 

@@ -3,7 +3,7 @@
 /// Equilibrium of a model at one instant: the forces at rest and their consistent tangent, for any
 /// nonlinear solver. Theory: docs/theory/reference.md, [R-4].
 
-#include "crossbeam/dynamics/model.hpp"
+#include "crossbeam/model/model.hpp"
 
 #include <Eigen/SparseCore>
 

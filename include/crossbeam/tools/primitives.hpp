@@ -4,7 +4,7 @@
 /// the gap itself and the parallel surface at distance d is the same shape with its gap less d.
 /// The fabric lies outside the sphere and the cylinder. Theory: docs/theory/tools.md.
 
-#include "crossbeam/contact/surface.hpp"
+#include "crossbeam/tools/surface.hpp"
 
 namespace crossbeam {
 
@@ -103,7 +103,8 @@ class Cylinder {
         radius_(require_positive(
             "cylinder.radius + offset",
             detail::require_square("cylinder.radius",
-                                   require_positive("cylinder.radius", radius, "length"), "length") +
+                                   require_positive("cylinder.radius", radius, "length"),
+                                   "length") +
                 detail::require_square("cylinder.offset", offset, "length"),
             "length")),
         across_(across(axis_)) {}

@@ -4,9 +4,11 @@
 /// straight. Theory: docs/theory/bending.md.
 
 #include "crossbeam/base/simd.hpp"
-#include "crossbeam/dynamics/force_block.hpp"
 #include "crossbeam/element/bending.hpp"
-#include "crossbeam/mesh/batches.hpp"
+#include "crossbeam/model/force_block.hpp"
+#include "crossbeam/sweep/index_batches.hpp"
+#include "crossbeam/sweep/lane_array.hpp"
+#include "crossbeam/sweep/run_vectors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -78,7 +80,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   }
 
   void add_forces(NodalState<R>& state, double dt) override {
-    const int stages = short_.empty() ? (long_.empty() ? 0 : long_[0].stages()) : short_[0].stages();
+    const int stages =
+        short_.empty() ? (long_.empty() ? 0 : long_[0].stages()) : short_[0].stages();
     for (int stage = 0; stage < stages; ++stage) add_stage(state, dt, stage);
   }
   [[nodiscard]] int bandwidth() const override {
@@ -281,8 +284,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
             [&](int k) { return batches_.template gather<U>(state.x, batches_[b], k); },
             constants_.data(b));
         const T energy = stiffness_.load(b, 0) * dot(kappa, kappa);
-        sum += 0.5 * static_cast<double>(
-                         lane_sum(select(batches_.active(batches_[b]), energy, zero)));
+        sum +=
+            0.5 * static_cast<double>(lane_sum(select(batches_.active(batches_[b]), energy, zero)));
       }
       return sum;
     }
@@ -298,8 +301,9 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
               const Eigen::Vector3d diagonal(
                   k * static_cast<double>(sign_x_[i]) * static_cast<double>(sign_x_[j]),
                   k * static_cast<double>(sign_y_[i]) * static_cast<double>(sign_y_[j]), k);
-              TangentEntries::add(tangent.stiffness, 3 * batches_.node(b, i, l), 3 * batches_.node(b, j, l),
-                           Eigen::Matrix3d(diagonal.asDiagonal()));
+              TangentEntries::add(tangent.stiffness, 3 * batches_.node(b, i, l),
+                                  3 * batches_.node(b, j, l),
+                                  Eigen::Matrix3d(diagonal.asDiagonal()));
             }
     }
 
@@ -333,9 +337,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       constexpr int first = is_double ? 0 : 1;
       Vec3<U> kappa = term(first);
       if constexpr (Columns == 3)  // unused columns have no weight
-        unrolled<Columns - 1 - first>([&](auto k) CROSSBEAM_INLINE_LAMBDA {
-          kappa = kappa + term(first + 1 + k);
-        });
+        unrolled<Columns - 1 - first>(
+            [&](auto k) CROSSBEAM_INLINE_LAMBDA { kappa = kappa + term(first + 1 + k); });
       else
         for (int k = first + 1; k < used_; ++k) kappa = kappa + term(k);
       return kappa;

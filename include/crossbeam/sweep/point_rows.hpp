@@ -36,14 +36,14 @@ struct PointRows {
     }
   };
 
-  VectorRow f1, f2;              ///< fibre vectors
-  Row b11, b22, b12;             ///< fibre strains
-  Row inv1, inv2;                ///< reciprocals of the yarns' stretches
-  Row u1, u2;                    ///< elongations of the cells' yarns
-  Row m11, m22, m12;             ///< stress
+  VectorRow f1, f2;   ///< fibre vectors
+  Row b11, b22, b12;  ///< fibre strains
+  Row inv1, inv2;     ///< reciprocals of the yarns' stretches
+  Row u1, u2;         ///< elongations of the cells' yarns
+  Row m11, m22, m12;  ///< stress
   struct {
     Row g, D, F, k_Lh;
-  } yarn[2];                     ///< FollowedYarn
+  } yarn[2];  ///< FollowedYarn
 
   CROSSBEAM_INLINE FibreStrain<T> strain(int i) const {
     return {b11.load(i), b22.load(i), b12.load(i)};
@@ -99,16 +99,16 @@ struct PointRows {
     for (int i = 0; i < end; i += lanes, height += stride) {
       CrimpHeights<T> w{T::load(height), T::load(height + lanes)};
       T s11, s22;
-      law.follow(u1.load(i), u2.load(i), inv1.load(i), inv2.load(i), followed(0, i),
-                 followed(1, i), w, s11, s22);
+      law.follow(u1.load(i), u2.load(i), inv1.load(i), inv2.load(i), followed(0, i), followed(1, i),
+                 w, s11, s22);
       w.w1.store(height);
       w.w2.store(height + lanes);
       m11.store(i, s11);
       m22.store(i, s22);
     }
     for (int i = 0; i < end; i += lanes)
-      store_stress(i, law.with_shear(strain(i), inv1.load(i), inv2.load(i), m11.load(i),
-                                     m22.load(i)));
+      store_stress(i,
+                   law.with_shear(strain(i), inv1.load(i), inv2.load(i), m11.load(i), m22.load(i)));
   }
 };
 

@@ -3,8 +3,8 @@
 /// What the time integration asks of a group of elements or stencils. A scene is a list of blocks:
 /// what it does not have costs nothing.
 
-#include "crossbeam/mesh/nodal_state.hpp"
-#include "crossbeam/mesh/tangent_entries.hpp"
+#include "crossbeam/model/nodal_state.hpp"
+#include "crossbeam/model/tangent_entries.hpp"
 
 #include <limits>
 #include <string>
@@ -21,16 +21,16 @@ struct InternalEnergy {
 
 /// What one element looks like, averaged over its Gauss points: for output and checks.
 struct ElementSample {
-  double shear_angle = 0;                       ///< signed [rad]
-  double stretch[2] = {1, 1};                   ///< warp, weft [-]
-  double tension[2] = {0, 0};                   ///< per unit width [kN/mm]
-  double crimp_height[2] = {0, 0};              ///< H + w of the yarns [mm]
-  double contact_force = 0;                     ///< of the cell, pressure positive [kN]
-  bool slack = false;                           ///< the yarns do not touch
-  bool fallback = false;                        ///< second-order cell answered by the energy cell
-  double cell_correction = 0;                   ///< last Newton correction of the cell, or how far
-                                                ///< its followed heights are off [mm]
-  Vec3<double> warp{}, weft{};                  ///< current unit directions
+  double shear_angle = 0;           ///< signed [rad]
+  double stretch[2] = {1, 1};       ///< warp, weft [-]
+  double tension[2] = {0, 0};       ///< per unit width [kN/mm]
+  double crimp_height[2] = {0, 0};  ///< H + w of the yarns [mm]
+  double contact_force = 0;         ///< of the cell, pressure positive [kN]
+  bool slack = false;               ///< the yarns do not touch
+  bool fallback = false;            ///< second-order cell answered by the energy cell
+  double cell_correction = 0;       ///< last Newton correction of the cell, or how far
+                                    ///< its followed heights are off [mm]
+  Vec3<double> warp{}, weft{};      ///< current unit directions
 };
 
 template <class R>

@@ -2,7 +2,7 @@
 /// @file
 /// A height field as a rigid tool. Theory: docs/theory/tools.md.
 
-#include "crossbeam/contact/surface.hpp"
+#include "crossbeam/tools/surface.hpp"
 
 #include <utility>
 

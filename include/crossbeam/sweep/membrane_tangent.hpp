@@ -5,7 +5,7 @@
 
 #include "crossbeam/element/coefficients.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
-#include "crossbeam/mesh/tangent_entries.hpp"
+#include "crossbeam/model/tangent_entries.hpp"
 
 #include <Eigen/Core>
 
@@ -16,9 +16,9 @@ namespace crossbeam {
 /// State of one Gauss point, as its tangent needs it.
 template <int M>
 struct MembranePointTangent {
-  double t[2][M];           ///< coefficients of the fibre vectors [1/length]
-  double weight;            ///< reference area [length^2]
-  double viscosity;         ///< mu of [D-5]
+  double t[2][M];    ///< coefficients of the fibre vectors [1/length]
+  double weight;     ///< reference area [length^2]
+  double viscosity;  ///< mu of [D-5]
   Vec3<double> f[2], rate[2];
   FibreStress<double> stress;
   StrainHessian<double> hessian;

@@ -5,7 +5,7 @@
 /// The analytic surface is a fit (0.11 mm rms) to the tool height map of a public textile-forming
 /// study (repository eismont21/knowledge-surrogate-opt). Theory: docs/theory/tools.md.
 
-#include "crossbeam/contact/surface.hpp"
+#include "crossbeam/tools/surface.hpp"
 
 #include <numbers>
 
