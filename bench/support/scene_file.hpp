@@ -176,27 +176,24 @@ class SceneFile {
   void with_shear(const Cell& cell, crossbeam::SolverControl control, const std::string& iterated,
                   const Use& use) const {
     using namespace crossbeam;
-    const auto angle = FibreAngle<R>::right();
     const auto real = [](const std::vector<double>& v) {
       return std::vector<R>(v.begin(), v.end());
     };
     const drape::ShearInput& shear = fabric_.shear;
     switch (shear.kind) {
       case drape::ShearLawKind::constant:
-        return use(
-            membrane(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure), control),
-            iterated);
+        return use(membrane(cell, ConstantShear<R>(R(shear.modulus), shear.measure), control),
+                   iterated);
       case drape::ShearLawKind::polynomial:
-        return use(
-            membrane(cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle),
-                     control),
-            iterated);
-      case drape::ShearLawKind::tabulated:
-        return use(membrane(cell,
-                            TabulatedShear<R>(
-                                TabulatedCurve<R>(real(shear.angle), real(shear.traction)), angle),
+        return use(membrane(cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients))),
                             control),
                    iterated);
+      case drape::ShearLawKind::tabulated:
+        return use(
+            membrane(cell,
+                     TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction))),
+                     control),
+            iterated);
     }
   }
 

@@ -9,8 +9,7 @@ int main() {
   using namespace crossbeam;
   const CellParameters<double> table1;              // Table 1 of the paper; kN, mm
   const auto fibres = FibreAngle<double>::right();  // warp and weft perpendicular
-  const WovenMembrane law(CrossedBeamCell<double>(table1), ConstantShear<double>(0.001, fibres),
-                          fibres);
+  const WovenMembrane law(CrossedBeamCell<double>(table1), ConstantShear<double>(0.001), fibres);
 
   Matrix2<double> E;  // Green-Lagrange strain in the axes Y1 = warp, Y2
   E << 0.010, 0.002,  //

@@ -44,12 +44,10 @@ struct SphereSheet {
   template <class R>
   [[nodiscard]] auto law() const {
     const auto angle = FibreAngle<R>::right();
-    return WovenMembrane(
-        CrossedBeamCell<R>(CellParameters<R>{}),
-        PolynomialShear<R>(PolynomialCurve<R>({R(0.051e-3), R(-0.83e-3), R(6.1275e-3),
-                                               R(-12.0972e-3), R(8.48e-3)}),
-                           angle),
-        angle, YarnWidth::corrected, SolverControl::fixed(cell_sweeps));
+    return WovenMembrane(CrossedBeamCell<R>(CellParameters<R>{}),
+                         PolynomialShear<R>(PolynomialCurve<R>(
+                             {R(0.051e-3), R(-0.83e-3), R(6.1275e-3), R(-12.0972e-3), R(8.48e-3)})),
+                         angle, YarnWidth::corrected, SolverControl::fixed(cell_sweeps));
   }
 
   template <class R>
@@ -71,7 +69,7 @@ struct SphereSheet {
         const double uniform = static_cast<double>(random >> 11) * 0x1.0p-52 - 1;
         state.x.z[k] = static_cast<double>(state.free.z[k]) * (perturbation * uniform);
       }
-    Model<R> out(std::move(state), areal_mass, mass_damping);
+    Model<R> out(std::move(state), mass_damping);
     const MembraneOptions options{1e-4, 0.06};
     if (gauss_points == 1)
       out.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, Law>>(sheet, law<R>(), areal_mass,

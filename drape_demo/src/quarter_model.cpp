@@ -20,7 +20,7 @@ QuarterModel<R>::QuarterModel(const DrapeCase& c)
       mesh_(rectangle(c.blank.half_width, c.blank.half_length, grid_.nx, grid_.ny,
                       c.blank.layout * std::numbers::pi / 180)),
       punch_{c.process.stroke, c.process.stroke / c.process.speed},
-      model_(initial_state(), c.fabric.areal_mass, c.integration.mass_damping) {
+      model_(initial_state(), c.integration.mass_damping) {
   add_membrane();
   if (c.fabric.warp_bending_stiffness > 0 || c.fabric.weft_bending_stiffness > 0)
     model_.add(std::make_unique<BendingSweep<NativePack<R>>>(
@@ -65,18 +65,16 @@ template <class R>
 template <class Cell>
 void QuarterModel<R>::add_membrane_with(const Cell& cell) {
   const ShearInput& shear = case_.fabric.shear;
-  const auto angle = FibreAngle<R>::right();
   const auto real = [](const std::vector<double>& v) { return std::vector<R>(v.begin(), v.end()); };
   switch (shear.kind) {
     case ShearLawKind::constant:
-      return add_membrane_with(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure));
+      return add_membrane_with(cell, ConstantShear<R>(R(shear.modulus), shear.measure));
     case ShearLawKind::polynomial:
-      return add_membrane_with(
-          cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle));
+      return add_membrane_with(cell,
+                               PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients))));
     case ShearLawKind::tabulated:
       return add_membrane_with(
-          cell,
-          TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)), angle));
+          cell, TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction))));
   }
 }
 

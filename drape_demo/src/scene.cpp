@@ -192,9 +192,8 @@ void check_laws(const FabricInput& fabric, const Locator& where) {
           [&] { crossbeam::validate(fabric.cell.cast<R>(), "fabric.cell"); });
   const ShearInput& shear = fabric.shear;
   if (shear.kind == ShearLawKind::constant)
-    located({"fabric.shear.modulus", "integration.precision"}, [&] {
-      static_cast<void>(ConstantShear<R>(R(shear.modulus), FibreAngle<R>::right(), shear.measure));
-    });
+    located({"fabric.shear.modulus", "integration.precision"},
+            [&] { static_cast<void>(ConstantShear<R>(R(shear.modulus), shear.measure)); });
   if (shear.kind == ShearLawKind::polynomial)
     located({"fabric.shear.coefficients", "integration.precision"},
             [&] { static_cast<void>(PolynomialCurve<R>(real(shear.coefficients))); });

@@ -25,6 +25,8 @@
 #include "crossbeam/tools/stadium_ring.hpp"
 #include "crossbeam/tools/surface.hpp"
 
+#include "crossbeam/law/fabric.hpp"
+#include "crossbeam/law/membrane_law.hpp"
 #include "crossbeam/law/shear.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
 
@@ -63,3 +65,5 @@
 #include "crossbeam/dynamics/central_difference.hpp"
 #include "crossbeam/dynamics/step_order.hpp"
 #include "crossbeam/dynamics/thread_team.hpp"
+
+#include "crossbeam/simulation/fabric_model.hpp"

@@ -209,8 +209,8 @@ bool compare_all() {
   const auto angle = FibreAngle<R>::right();
   const auto fixed = SolverControl::fixed(3);
   const CrossedBeamCell<R> cell(parameters);
-  const PolynomialShear<R> polynomial(PolynomialCurve<R>({R(1e-4), R(0), R(2e-3)}), angle);
-  const ConstantShear<R> constant(R(1e-3), angle);
+  const PolynomialShear<R> polynomial(PolynomialCurve<R>({R(1e-4), R(0), R(2e-3)}));
+  const ConstantShear<R> constant(R(1e-3));
   const auto law = [&](const auto& unit_cell, const auto& shear, SolverControl control) {
     return WovenMembrane(unit_cell, shear, angle, YarnWidth::corrected, control);
   };

@@ -25,9 +25,8 @@ template <class R>
 WovenMembrane<CrossedBeamCell<R>, PolynomialShear<R>> fabric_in() {
   const FibreAngle<R> angle = FibreAngle<R>::right();
   return {CrossedBeamCell<R>(CellParameters<R>{}),
-          PolynomialShear<R>(PolynomialCurve<R>({R(0.051e-3), R(-0.83e-3), R(6.1275e-3),
-                                                 R(-12.0972e-3), R(8.48e-3)}),
-                             angle),
+          PolynomialShear<R>(PolynomialCurve<R>(
+              {R(0.051e-3), R(-0.83e-3), R(6.1275e-3), R(-12.0972e-3), R(8.48e-3)})),
           angle};
 }
 
@@ -57,7 +56,7 @@ Answer answer(const Mesh<4>& m, const Points& x, const Points& v, bool bending) 
   const auto law = fabric_in<R>();
   MembraneSweep<T, Element, std::decay_t<decltype(law)>> sweep(m, law, areal_mass, {0.01, 0.06});
   sweep.add_forces(state, 1.0);
-  InternalEnergy e;
+  EnergyLedger e;
   sweep.add_energy(state, e);
   if (bending) {
     BendingSweep<T> bend(m, {1.4e-3, 2e-3}, areal_mass);
@@ -69,7 +68,7 @@ Answer answer(const Mesh<4>& m, const Points& x, const Points& v, bool bending) 
     const auto f = state.f.get(n);
     out.f.push_back({double(f.x), double(f.y), double(f.z)});
   }
-  out.energy = e.stored() + e.bulk_viscosity;
+  out.energy = e.stored() + e.value("bulk_viscosity");
   std::vector<ElementSample> samples;
   sweep.sample(state, samples);
   for (const auto& s : samples) out.shear.push_back(s.shear_angle);

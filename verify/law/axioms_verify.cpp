@@ -231,9 +231,8 @@ TEST_CASE("V-LAW-22 with a shear layer waves soften by the compressive stress al
 TEST_CASE("V-LAW-23 a strain of yarns on one line, and a number that is none, never go unnoticed") {
   // At 90 deg without stretch the yarns' cosine is 2 E12: the last one accepted is 1 - 8 eps, exclusive.
   const double eps = std::numeric_limits<double>::epsilon();
-  const auto law = verify::woven<double>(
-      crossbeam::CellParameters<double>{},
-      crossbeam::ConstantShear<double>(1e-3, verify::fibre_angle<double>(90)), 90);
+  const auto law = verify::woven<double>(crossbeam::CellParameters<double>{},
+                                         crossbeam::ConstantShear<double>(1e-3), 90);
   const auto status = [&](double cosine) {
     Matrix2<double> E;
     E << 0, cosine / 2, cosine / 2, 0;

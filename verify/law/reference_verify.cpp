@@ -35,7 +35,7 @@ Membrane membrane_of(const Json& state, double G12,
                      crossbeam::YarnWidth width = crossbeam::YarnWidth::corrected) {
   const auto angle = angle_of(state);
   return {crossbeam::CrossedBeamCell<double>(verify::reference_parameters<double>(state)),
-          crossbeam::ConstantShear<double>(G12, angle), angle, width};
+          crossbeam::ConstantShear<double>(G12), angle, width};
 }
 
 }  // namespace

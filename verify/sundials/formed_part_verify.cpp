@@ -25,8 +25,7 @@ TEST_CASE(
   scene.fabric.cell_sweeps = 8;  // the tangent is that of the equilibrium
   scene.process.hold = 1;
   auto start = drape::dome_case<double>(scene);
-  CentralDifference<NativePack<double>> run(std::move(start.model));
-  run.start(0.9 * run.critical_step());
+  CentralDifference<NativePack<double>> run(std::move(start.model), TimeStep::fraction(0.9));
   while (run.time() < start.duration) run.step();
   const auto state = [&] {
     return drape::formed_state(run.model(), start.mesh, start.nx, start.ny);

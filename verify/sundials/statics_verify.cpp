@@ -36,8 +36,8 @@ struct HeldSheet {
       Vec3<double> x{(1 + xx) * X.x + xy * X.y, (1 + yy) * X.y, 0};
       Eigen::Vector3d d = random.vector(0.3);
       if (planar) d.z() = 0;
-      if (model.state.free.x[k] > 0) x = x + vec3(d);
-      model.state.x.set(k, x);
+      if (model.nodes().free.x[k] > 0) x = x + vec3(d);
+      model.nodes().x.set(k, x);
     }
   }
 };
@@ -92,7 +92,7 @@ TEST_CASE(
     INFO(c.name, table(r));
     REQUIRE(r.converged);
     std::vector<ElementSample> elements;
-    held.model.blocks[0]->sample(held.model.state, elements);
+    held.model.blocks()[0]->sample(held.model.nodes(), elements);
     int slack = 0;
     for (const auto& e : elements) slack += e.slack;
     REQUIRE((slack == 0) == c.taut);
@@ -126,8 +126,7 @@ TEST_CASE(
   sheet.held = true;
   sheet.friction_model = Friction::elastic_stick;
   sheet.smoothing = 0;
-  CentralDifference<T> run(sheet.model<double>());
-  run.start(0.9 * run.critical_step());
+  CentralDifference<T> run(sheet.model<double>(), TimeStep::fraction(0.9));
   double unbalanced = 0, moved = 0;
   std::string table;
   std::vector<double> at, distances;
@@ -136,7 +135,7 @@ TEST_CASE(
     while (run.time() < t * sheet.duration) run.step();
     const Points before = positions(run.model());
     Model<double>& model = run.model();
-    const NodalState<double> kept = model.state;
+    const NodalState<double> kept = model.nodes();
     StaticProblem problem(model, run.time());
     const StaticResult r = find_equilibrium(problem, {1e-10, 200, 0});
     REQUIRE(r.converged);
@@ -145,8 +144,8 @@ TEST_CASE(
     at.push_back(t);
     distances.push_back(moved);
     table += "\n  " + std::to_string(t) + " strokes: " + std::to_string(1e6 * moved) + " nm";
-    model.state = kept;
-    model.tools[0]->place(sheet.travel(run.time()), 0);
+    model.nodes() = kept;
+    model.tools()[0]->place(sheet.travel(run.time()), 0);
   }
   INFO(table);
   REQUIRE(positions(run.model())[sheet.middle()].z() > 4.8);

@@ -153,13 +153,29 @@ struct YarnState {
   }
 };
 
-/// A cell: answers (u1, u2) with forces, on request with its energy and tangent.
+/// A cell: answers the elongations (u1, u2) of its yarns with their forces. With members `energy`
+/// and `tangent` as CrossedBeamCell's it has a potential, which a law then shows; without them it
+/// says in `fallback` of its solution whether another cell had to answer.
 template <class C, class T>
-concept UnitCell = requires(const C& cell, T u) {
+concept UnitCell = requires(const C& cell, const T& u, SolverControl control) {
   typename C::Real;
-  { cell.solve(u, u).forces } -> std::convertible_to<CellForces<T>>;
-  { cell.membrane_stiffness_bound() } -> std::convertible_to<typename C::Real>;
+  typename C::template Solution<T>;
+  { cell.parameters() } -> std::convertible_to<CellParameters<typename C::Real>>;
+  { cell.solve(u, u, control) } -> std::same_as<typename C::template Solution<T>>;
+  { cell.solve(u, u, control).forces } -> std::convertible_to<CellForces<T>>;
+  { cell.solve(u, u, control).status } -> std::convertible_to<CellStatus>;
+  { cell.membrane_stiffness_bound(typename C::Real()) } -> std::convertible_to<typename C::Real>;
 };
+
+/// A cell whose heights explicit dynamics can follow from step to step, tag [C-14].
+template <class C, class T>
+concept FollowedCell =
+    UnitCell<C, T> &&
+    requires(const C& cell, const T& u, const FollowedYarn<T>& y, CrimpHeights<T>& heights) {
+      { cell.evaluate_yarn(cell.warp(), u, u) } -> std::same_as<FollowedYarn<T>>;
+      { cell.evaluate_yarn(cell.weft(), u, u) } -> std::same_as<FollowedYarn<T>>;
+      { cell.follow(u, u, y, y, heights) } -> std::same_as<YarnForces<T>>;
+    };
 
 enum class Contact { unilateral, bilateral };
 

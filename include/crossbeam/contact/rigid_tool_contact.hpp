@@ -29,6 +29,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       : Base(std::move(motion)),
         shape_(std::move(shape)),
         parameters_(parameters),
+        nodes_(nodes),
         batches_((nodes + lanes - 1) / lanes),
         stick_(nodes),
         friction_(nodes),
@@ -40,8 +41,11 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   }
 
   using Base::add_forces;
+  using Base::book_nodes;
 
-  void begin_forces(int parts, int flight = 0) override {
+  [[nodiscard]] std::optional<int> node_count() const override { return nodes_; }
+
+  void begin_forces(int parts, int flight) override {
     Base::begin_forces(parts, flight);
     at_start_ = !started_;
     started_ = true;
@@ -401,7 +405,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
 
   Shape shape_;
   ContactParameters parameters_;
-  int batches_;
+  int nodes_, batches_;
   NodeVectors<R> stick_;     // elastic slip xi [mm]
   NodeVectors<R> friction_;  // force on the node [kN]
   NodeVectors<R> damping_;   // force on the node [kN]

@@ -33,19 +33,29 @@ struct FibreStress {
 /// of the cells from step to step, tag [C-14].
 enum class CellPrice { equilibrium, followed };
 
+/// @tparam Cell  CrossedBeamCell, SecondOrderCell or a UnitCell of one's own
+/// @tparam Shear a shear layer; it is described without the fibre angle, which the law sets
 template <class Cell, class Shear, CellPrice Price = CellPrice::equilibrium>
+  requires UnitCell<Cell, typename Cell::Real> && ShearLaw<Shear, typename Cell::Real> &&
+           (Price == CellPrice::equilibrium || FollowedCell<Cell, typename Cell::Real>)
 class WovenMembrane {
  public:
   using Real = typename Cell::Real;
   using R = Real;
   static constexpr bool follows_heights = Price == CellPrice::followed;
 
+  /// @param reference angle between the yarns in the reference state
   /// @param width selects the corrected or the literal Eq. 15
   /// @param control how the cell is iterated at every evaluation
+  /// @throws InputError where the shear layer was given another angle before
   WovenMembrane(Cell cell, Shear shear, FibreAngle<R> reference = FibreAngle<R>::right(),
                 YarnWidth width = YarnWidth::corrected,
                 SolverControl control = SolverControl::converged())
-      : cell_(std::move(cell)), shear_(std::move(shear)), reference_(reference), control_(control) {
+      : cell_(std::move(cell)),
+        shear_(between_yarns(std::move(shear), reference)),
+        reference_(reference),
+        width_(width),
+        control_(control) {
     const auto& p = cell_.parameters();
     L1_ = p.warp.length;
     L2_ = p.weft.length;
@@ -53,6 +63,14 @@ class WovenMembrane {
               (R(p.symmetry) * L1_ * L2_ * (width == YarnWidth::corrected ? reference.sine : R(1)));
     width1_ = L1_ * inv_A0_;
     width2_ = L2_ * inv_A0_;
+  }
+
+  /// The same law for explicit dynamics, which then follows the heights of the cells, tag [C-14]:
+  /// the cheapest, and no other method can use it.
+  template <class C = Cell>
+    requires FollowedCell<C, R>
+  [[nodiscard]] WovenMembrane<C, Shear, CellPrice::followed> followed() const {
+    return {cell_, shear_, reference_, width_, control_};
   }
 
   [[nodiscard]] CROSSBEAM_HOST_DEVICE const Cell& cell() const { return cell_; }
@@ -113,7 +131,11 @@ class WovenMembrane {
   template <class T>
   CROSSBEAM_INLINE FibreStress<T> with_shear(const FibreStrain<T>& beta, const T& inv1,
                                              const T& inv2, const T& m11, const T& m22) const {
-    const StrainGradient<T> g = shear_.gradient(beta, inv1, inv2);
+    StrainGradient<T> g;
+    if constexpr (requires { shear_.gradient(beta, inv1, inv2); })
+      g = shear_.gradient(beta, inv1, inv2);
+    else
+      g = shear_.gradient(FibreState<T>{beta, stretch(beta.b11), stretch(beta.b22)});
     return {m11 + g.g1, m22 + g.g2, T(0.5) * g.g3};
   }
   /// @}
@@ -174,6 +196,7 @@ class WovenMembrane {
   Cell cell_;
   Shear shear_;
   FibreAngle<R> reference_;
+  YarnWidth width_;
   SolverControl control_;
   R L1_{}, L2_{}, inv_A0_{};
   R width1_{}, width2_{};  ///< L_i / A0

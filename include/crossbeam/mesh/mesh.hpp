@@ -8,8 +8,10 @@
 #include "crossbeam/element/triangle.hpp"
 #include "crossbeam/mesh/arrays.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -141,6 +143,19 @@ struct SymmetryPlanes {
   bool x = false;  ///< the plane x = 0
   bool y = false;  ///< the plane y = 0
 };
+
+/// A thousandth of the mesh's shortest edge [mm]: nodes closer to a mirror plane lie on it. Meshes
+/// written with six digits are off by far less, and no element is as flat.
+template <int Corners>
+[[nodiscard]] double plane_tolerance(const Mesh<Corners>& mesh) {
+  double shortest = std::numeric_limits<double>::max();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto X = mesh.corners(e);
+    for (int a = 0; a < Corners; ++a)
+      shortest = std::min(shortest, detail::norm(X[(a + 1) % Corners] - X[a]));
+  }
+  return 1e-3 * shortest;
+}
 
 /// A flat rectangle [0, width] x [0, length] of nx x ny quadrilaterals in the plane z = 0. Nodes are
 /// numbered along y first, so that consecutive elements have consecutive nodes.

@@ -5,6 +5,7 @@
 
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/element/bending.hpp"
+#include "crossbeam/law/fabric.hpp"
 #include "crossbeam/model/force_block.hpp"
 #include "crossbeam/sweep/index_batches.hpp"
 #include "crossbeam/sweep/lane_array.hpp"
@@ -20,11 +21,6 @@
 
 namespace crossbeam {
 
-struct BendingStiffness {
-  double warp = 0;  ///< D1 per unit width [kN mm]; >= 0
-  double weft = 0;  ///< D2 per unit width [kN mm]; >= 0
-};
-
 /// @tparam T pack
 template <class T>
 class BendingSweep final : public ForceBlock<real_t<T>> {
@@ -36,7 +32,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   /// [B-4]
   template <int Corners>
   BendingSweep(const Mesh<Corners>& mesh, const BendingStiffness& stiffness, double areal_mass,
-               const SymmetryPlanes& planes = {}) {
+               const SymmetryPlanes& planes = {})
+      : node_count_(mesh.node_count), areal_mass_(areal_mass) {
     require_positive("areal_mass", areal_mass, "kg/mm^2");
     const double D[2] = {require_non_negative("bending.warp", stiffness.warp, "kN mm"),
                          require_non_negative("bending.weft", stiffness.weft, "kN mm")};
@@ -98,10 +95,14 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     for (const auto& group : short_) group.add_forces(state, stage);
     for (const auto& group : long_) group.add_forces(state, stage);
   }
-  void add_energy(const NodalState<R>& state, InternalEnergy& energy) const override {
-    for (const auto& group : short_) energy.bending += group.energy(state);
-    for (const auto& group : long_) energy.bending += group.energy(state);
+  void add_energy(const NodalState<R>& state, EnergyLedger& ledger) const override {
+    double sum = 0;
+    for (const auto& group : short_) sum += group.energy(state);
+    for (const auto& group : long_) sum += group.energy(state);
+    ledger.add("bending", EnergyKind::stored, sum);
   }
+  [[nodiscard]] std::optional<int> node_count() const override { return node_count_; }
+  [[nodiscard]] std::optional<double> areal_mass() const override { return areal_mass_; }
   void add_tangent(const NodalState<R>&, TangentEntries& tangent) const override {
     for (const auto& group : short_) group.add_tangent(tangent);
     for (const auto& group : long_) group.add_tangent(tangent);
@@ -408,7 +409,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   static constexpr int most = 32;  // nodes of an oblique stencil: the ring and its images
   std::vector<Group<3>> short_;
   std::vector<Group<most>> long_;
-  double omega_squared_ = 0;
+  int node_count_;
+  double areal_mass_, omega_squared_ = 0;
   int count_ = 0;
 };
 

@@ -65,7 +65,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
                    Element::points * point_size + (Element::has_hourglass ? 3 : 0)),
         previous_(has_energy ? 0 : batches_.size(), has_energy ? 0 : Element::points * 4),
         heights_(follows ? batches_.size() : 0, follows ? Element::points * 2 : 0),
-        element_count_(mesh.element_count()) {
+        element_count_(mesh.element_count()),
+        node_count_(mesh.node_count),
+        areal_mass_(areal_mass) {
     hourglass_ = R(require_non_negative("hourglass_modulus", options.hourglass_modulus, "kN/mm"));
     require_non_negative("bulk_viscosity", options.bulk_viscosity, "-");
     require_positive("areal_mass", areal_mass, "kg/mm^2");
@@ -123,7 +125,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       sweep<false>(state, dt, stage);
   }
 
-  void add_energy(const NodalState<R>& state, InternalEnergy& energy) const override {
+  void add_energy(const NodalState<R>& state, EnergyLedger& ledger) const override {
+    double yarn_sum = 0, shear_sum = 0, hourglass_sum = 0, viscous_sum = 0;
     for (int b = 0; b < batches_.size(); ++b) {
       const auto& batch = batches_[b];
       const auto active = batches_.active(batch);
@@ -141,15 +144,19 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
         hourglass = T(R(0.5)) * hourglass_stiffness(b) * dot(q, q);
       }
       const T zero(R(0));
-      energy.yarn += static_cast<double>(lane_sum(select(active, yarn, zero)));
-      energy.shear += static_cast<double>(lane_sum(select(active, shear, zero)));
-      energy.hourglass += static_cast<double>(lane_sum(select(active, hourglass, zero)));
+      yarn_sum += static_cast<double>(lane_sum(select(active, yarn, zero)));
+      shear_sum += static_cast<double>(lane_sum(select(active, shear, zero)));
+      hourglass_sum += static_cast<double>(lane_sum(select(active, hourglass, zero)));
     }
     for (const StageSums& sums : stage_sums_) {
-      energy.yarn += sums.path_work;
+      yarn_sum += sums.path_work;
       // At t_n only half of this step's dissipation has happened.
-      energy.bulk_viscosity += sums.viscous_work - 0.5 * sums.viscous_step;
+      viscous_sum += sums.viscous_work - 0.5 * sums.viscous_step;
     }
+    ledger.add("yarn", EnergyKind::stored, yarn_sum);
+    ledger.add("shear", EnergyKind::stored, shear_sum);
+    ledger.add("hourglass", EnergyKind::stored, hourglass_sum);
+    ledger.add("bulk_viscosity", EnergyKind::dissipated, viscous_sum);
   }
 
   void add_tangent(const NodalState<R>& state, TangentEntries& tangent) const override {
@@ -159,6 +166,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       ForceBlock<R>::add_tangent(state, tangent);
   }
 
+  [[nodiscard]] std::optional<int> node_count() const override { return node_count_; }
+  [[nodiscard]] std::optional<double> areal_mass() const override { return areal_mass_; }
   [[nodiscard]] bool has_memory() const override { return follows; }
   [[nodiscard]] double omega_squared() const override { return omega_squared_; }
   [[nodiscard]] double damping_rate() const override { return damping_rate_; }
@@ -685,7 +694,8 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   LaneArray<T> constants_;
   LaneArray<T> previous_;
   LaneArray<T> heights_;  // of the cells, where the law follows them
-  int element_count_;
+  int element_count_, node_count_;
+  double areal_mass_;
   R hourglass_{};
   bool skewed_ = false;  // an element that is no parallelogram
   bool viscosity_ = false, started_ = false, begun_ = false, heights_known_ = false;

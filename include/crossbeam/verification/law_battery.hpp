@@ -289,7 +289,7 @@ void verify_yarn(Battery& battery, const Law& law, const CellParameters<double>&
   const CrossedBeamCell<double, Contact::unilateral, Law> cell(fabric, law, law);
   verify_cell(battery, cell);
   const auto right = FibreAngle<double>::right();
-  verify_law(battery, WovenMembrane(cell, ConstantShear<double>(0.001, right), right));
+  verify_law(battery, WovenMembrane(cell, ConstantShear<double>(0.001), right));
 }
 
 /// The whole way of a shear law: B-SHEAR on itself and B-LAW on a membrane of Table 1 with it.

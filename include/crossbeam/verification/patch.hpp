@@ -127,7 +127,7 @@ inline Points gradient(ForceBlock<double>& block, NodalState<double>& state) {
   return out;
 }
 inline double energy(const ForceBlock<double>& block, const NodalState<double>& state) {
-  InternalEnergy e;
+  EnergyLedger e;
   block.add_energy(state, e);
   return e.stored();
 }
