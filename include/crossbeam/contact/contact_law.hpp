@@ -29,6 +29,7 @@ struct ContactParameters {
   double smoothing = 0;        ///< depth over which the penalty sets in [mm]; 0: at once, tag [F-5]
   bool culling = true;         ///< skip packs of nodes that cannot have reached the tool
   bool region_classes = true;  ///< ask the flat part of a tool for its height alone
+  bool check_start = true;     ///< refuse nodes deep in the tool and tools that fit between nodes
 };
 
 inline void validate(const ContactParameters& p, const std::string& prefix = "contact") {

@@ -6,6 +6,7 @@
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/contact/contact_law.hpp"
+#include "crossbeam/contact/start_check.hpp"
 #include "crossbeam/model/tool_contact.hpp"
 #include "crossbeam/tools/surface.hpp"
 
@@ -37,6 +38,41 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
         safe_until_(batches_, 0.0),
         active_(batches_, 0) {
     validate(parameters);
+  }
+
+  /// Nodes inside the tool where it is now.
+  [[nodiscard]] StartPenetration start_penetration(const NodalState<R>& state) const {
+    StartPenetration out;
+    const T zero(R(0));
+    for (int n = 0; n < state.node_count; n += lanes) {
+      const T area = T::load(state.area.data() + n);
+      Vec3<Wide> x = load<Wide>(state.x, n);
+      x.z = x.z - Wide(this->now_.z);
+      const T gap = shape_.gap(convert<T>(x)).gap;
+      const auto inside = (gap < zero) && (area > zero);
+      if (!any(inside)) continue;
+      const T depth = select(inside, -gap, zero), k = constant<T>(parameters_.penalty) * area;
+      const T energy = penalty_force(depth, zero, k, zero, inside).energy;
+      for (int lane = 0; lane < lanes; ++lane) {
+        const double d = static_cast<double>(depth[lane]);
+        if (!(d > 0)) continue;
+        ++out.nodes;
+        if (d <= out.depth) continue;
+        out.deepest = n + lane;
+        out.depth = d;
+        out.speed = std::sqrt(2 * static_cast<double>(energy[lane]) /
+                              static_cast<double>(state.mass[n + lane]));
+      }
+    }
+    return out;
+  }
+  /// What can be said before a run from `state`; nothing unless parameters.check_start.
+  /// @param widest longest distance between two nodes of one element [mm] (widest_element)
+  /// @throws InputError (require_gentle, require_no_gap)
+  void check_start(const NodalState<R>& state, double widest) const {
+    if (!parameters_.check_start) return;
+    require_no_gap(smallest_width(shape_), widest);
+    require_gentle(start_penetration(state));
   }
 
   using Base::add_forces;
@@ -162,8 +198,6 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   void come_to_rest(const NodalState<R>& state) override {
     rest_ = state.x;
     rest_z_ = this->now_.z;
-    if (parameters_.friction_model != Friction::elastic_stick)
-      std::fill(stick_.x.begin(), stick_.x.end(), R(0));
   }
 
   double add_rest_forces(NodalState<R>& state, int tool_row,
