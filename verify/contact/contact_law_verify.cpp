@@ -2,6 +2,7 @@
 // before any time integration.
 
 #include "crossbeam/contact/rigid_tool_contact.hpp"
+#include "crossbeam/tools/height_surface.hpp"
 #include "crossbeam/tools/primitives.hpp"
 
 #include "element/patches.hpp"
@@ -36,6 +37,18 @@ NodalState<double> plate(double depth, const Vec3<double>& v) {
   }
   return state;
 }
+
+/// The least that the contact asks of a surface: an answer to its pack.
+struct OwnGround {
+  SurfaceGap<Lane> gap(const Vec3<Lane>& p) const {
+    return {p.z, {Lane(0), Lane(0), Lane(1)}, p.z};
+  }
+};
+struct OwnHeight {
+  double slope;
+  HeightSample<double> height(double, double) const { return {0, 0, 0}; }
+  [[nodiscard]] double max_slope() const { return slope; }
+};
 
 void clear(NodalState<double>& state) {
   for (int n = 0; n < 4; ++n) state.f.set(n, {0, 0, 0});
@@ -196,6 +209,18 @@ TEST_CASE(
     }
   // h^2 over the squared depth, and roundings of k d / h.
   tangents.claim("V-CONT-33", 1e-7, "tangent against differences, over the penalty");
+
+  // A surface that answers its pack alone has forces and no tangent, and says so.
+  auto own = contact_of(p, OwnGround{});
+  auto state = plate(0.3, {0, 0, 0});
+  own.add_forces(state, 1e-3, 0);
+  CHECK(state.f.z[0] > 0);
+  TangentEntries none;
+  CHECK_THROWS_AS(own.add_tangent(state, -1, none), InputError);
+  CHECK_THROWS_AS(own.add_rest_forces(state, -1, nullptr), InputError);
+  for (double slope : {-1.0, std::nan("")})
+    CHECK_THROWS_AS(HeightSurface(OwnHeight{slope}, Side::above), InputError);
+  CHECK(HeightSurface(OwnHeight{INFINITY}, Side::above).gap(Vec3<double>{0, 0, 2}).clearance == 0);
 
   double held = 0;
   p.smoothing = 0;

@@ -52,7 +52,7 @@ TEST_CASE("V-CONT-35 a start deep in a tool is refused with the speed that it wo
   const auto text = [&](const auto& contact) {
     return refusal([&] { contact.check_start(state, widest_element(mesh)); });
   };
-  // Laid exactly on the tool, beside it, or as deep as its own weight presses it (g = 0.01 mm/ms^2).
+  // Laid exactly on the tool, beside it, or as deep as its own weight presses it (g = 0.01).
   CHECK(text(contact_of(ground())) == "");
   CHECK(text(contact_of(ground(-3))) == "");
   CHECK(text(contact_of(ground(0.01 * areal_mass / 0.05))) == "");

@@ -167,32 +167,35 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   void add_tangent(const NodalState<R>& state, int tool_row,
                    TangentEntries& tangent) const override {
     using D = Dual<R, 6>;  // position and velocity of the node against the tool
-    for (int n = 0; n < state.node_count; ++n) {
-      Vec3<D> p, v;
-      const Vec3<R> x = seen(state.x.get(n), this->now_.z), rate = state.v.get(n);
-      p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
-      v = {D::variable(rate.x, 3), D::variable(rate.y, 4),
-           D::variable(rate.z - R(this->now_.v_plus), 5)};
-      const SurfaceGap<D> at = shape_.gap(p);
-      if (!(at.gap < D(R(0)))) continue;
-      const D k(R(parameters_.penalty) * state.area[n]), m(state.mass[n]);
-      using std::sqrt;
-      const NormalForce<D> normal =
-          penalty_force(-at.gap, -dot(v, at.normal), k, sqrt(k * m), true);
-      const Vec3<D> force =
-          normal.pressure * at.normal + smooth_friction(tangential<false>(v, at.normal),
-                                                        friction_limit(normal.pressure),
-                                                        constant<D>(parameters_.slip_speed));
-      const D component[3] = {force.x, force.y, force.z};
-      Eigen::Matrix3d K, C;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          K(i, j) = -static_cast<double>(component[i].d[j]);
-          C(i, j) = -static_cast<double>(component[i].d[3 + j]);
-        }
-      add_blocks(tangent.stiffness, n, tool_row, K);
-      if (tangent.with_damping) add_blocks(tangent.damping, n, tool_row, C);
-    }
+    if constexpr (!Surface<Shape, D>)
+      throw no_tangent();
+    else
+      for (int n = 0; n < state.node_count; ++n) {
+        Vec3<D> p, v;
+        const Vec3<R> x = seen(state.x.get(n), this->now_.z), rate = state.v.get(n);
+        p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
+        v = {D::variable(rate.x, 3), D::variable(rate.y, 4),
+             D::variable(rate.z - R(this->now_.v_plus), 5)};
+        const SurfaceGap<D> at = shape_.gap(p);
+        if (!(at.gap < D(R(0)))) continue;
+        const D k(R(parameters_.penalty) * state.area[n]), m(state.mass[n]);
+        using std::sqrt;
+        const NormalForce<D> normal =
+            penalty_force(-at.gap, -dot(v, at.normal), k, sqrt(k * m), true);
+        const Vec3<D> force =
+            normal.pressure * at.normal + smooth_friction(tangential<false>(v, at.normal),
+                                                          friction_limit(normal.pressure),
+                                                          constant<D>(parameters_.slip_speed));
+        const D component[3] = {force.x, force.y, force.z};
+        Eigen::Matrix3d K, C;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            K(i, j) = -static_cast<double>(component[i].d[j]);
+            C(i, j) = -static_cast<double>(component[i].d[3 + j]);
+          }
+        add_blocks(tangent.stiffness, n, tool_row, K);
+        if (tangent.with_damping) add_blocks(tangent.damping, n, tool_row, C);
+      }
   }
 
   void come_to_rest(const NodalState<R>& state) override {
@@ -204,33 +207,36 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
                          TangentEntries* tangent) const override {
     using D = Dual<R, 3>;
     double sum = 0;
-    for (int n = 0; n < state.node_count; ++n) {
-      const Vec3<R> x = seen(state.x.get(n), this->now_.z), x0 = seen(rest_.get(n), rest_z_);
-      const Vec3<R> xi0 = stick_.get(n);
-      const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
-      const SurfaceGap<D> at = shape_.gap(p);
-      if (!(at.gap < D(R(0)))) continue;
-      const D k(R(parameters_.penalty) * state.area[n]), none(R(0));
-      const NormalForce<D> normal = penalty_force(-at.gap, none, k, none, true);
-      Vec3<D> force = normal.pressure * at.normal;
-      if (parameters_.friction_model == Friction::elastic_stick) {
-        const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
-                         D(xi0.z) + p.z - D(x0.z)};
-        force = force + stick_friction<false>(xi, Vec3<D>{}, at.normal,
-                                              constant<D>(parameters_.stick_ratio) * k, none,
-                                              friction_limit(normal.pressure))
-                            .force;
+    if constexpr (!Surface<Shape, D>)
+      throw no_tangent();
+    else
+      for (int n = 0; n < state.node_count; ++n) {
+        const Vec3<R> x = seen(state.x.get(n), this->now_.z), x0 = seen(rest_.get(n), rest_z_);
+        const Vec3<R> xi0 = stick_.get(n);
+        const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
+        const SurfaceGap<D> at = shape_.gap(p);
+        if (!(at.gap < D(R(0)))) continue;
+        const D k(R(parameters_.penalty) * state.area[n]), none(R(0));
+        const NormalForce<D> normal = penalty_force(-at.gap, none, k, none, true);
+        Vec3<D> force = normal.pressure * at.normal;
+        if (parameters_.friction_model == Friction::elastic_stick) {
+          const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
+                           D(xi0.z) + p.z - D(x0.z)};
+          force = force + stick_friction<false>(xi, Vec3<D>{}, at.normal,
+                                                constant<D>(parameters_.stick_ratio) * k, none,
+                                                friction_limit(normal.pressure))
+                              .force;
+        }
+        const Vec3<R> f{force.x.value, force.y.value, force.z.value};
+        state.f.set(n, state.f.get(n) + f);
+        sum += static_cast<double>(f.z);
+        if (!tangent) continue;
+        const D component[3] = {force.x, force.y, force.z};
+        Eigen::Matrix3d K;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) K(i, j) = -static_cast<double>(component[i].d[j]);
+        add_blocks(tangent->stiffness, n, tool_row, K);
       }
-      const Vec3<R> f{force.x.value, force.y.value, force.z.value};
-      state.f.set(n, state.f.get(n) + f);
-      sum += static_cast<double>(f.z);
-      if (!tangent) continue;
-      const D component[3] = {force.x, force.y, force.z};
-      Eigen::Matrix3d K;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) K(i, j) = -static_cast<double>(component[i].d[j]);
-      add_blocks(tangent->stiffness, n, tool_row, K);
-    }
     return sum;
   }
 
@@ -338,6 +344,11 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   CROSSBEAM_INLINE static Vec3<S> slip(Vec3<S> v, const S& tool_v, const Vec3<S>& normal) {
     v.z = v.z - tool_v;
     return tangential<Flat>(v, normal);
+  }
+
+  static InputError no_tangent() {
+    return {"tool surface", "not for dual numbers", "",
+            "gap(Vec3<T>) for any scalar T, where a tangent or forces at rest are asked for"};
   }
 
   static void add_blocks(std::vector<TangentEntries::Entry>& list, int node, int tool_row,
