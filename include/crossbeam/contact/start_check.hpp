@@ -20,8 +20,8 @@ struct StartPenetration {
   double speed = 0;  ///< at which its penalty throws it off if nothing holds it [mm/ms]
 };
 
-/// A penalty may throw a node off at up to 10 mm/ms: five times the speed of a forming tool in these
-/// simulations, and with the usual penalty and areal mass a depth of 0.06 mm, well above the
+/// A penalty may throw a node off at up to 10 mm/ms: five times the speed of a forming tool in the
+/// drape, and with the usual penalty and areal mass a depth of 0.06 mm, well above the
 /// rounding of coordinates and the error of a tabulated tool. A larger one lets fly what should
 /// begin at rest.
 inline constexpr double most_start_speed = 10;
