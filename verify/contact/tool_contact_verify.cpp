@@ -549,6 +549,7 @@ TEST_CASE("V-CONT-28 bad contact input is refused by field, value and range") {
       {"contact.friction", [](ContactParameters& p) { p.friction = std::nan(""); }},
       {"contact.stick_ratio", [](ContactParameters& p) { p.stick_ratio = 0; }},
       {"contact.slip_speed", [](ContactParameters& p) { p.slip_speed = -1; }},
+      {"contact.smoothing", [](ContactParameters& p) { p.smoothing = -0.1; }},
   };
   int accepted = 0;
   const auto refused = [&](const std::string& field, auto build) {
@@ -571,6 +572,55 @@ TEST_CASE("V-CONT-28 bad contact input is refused by field, value and range") {
   refused("tool.mass", [] { ToolMotion::free_under([](double) { return 0.0; }, 0, 0); });
   refused("tool.damping_rate", [] { ToolMotion::free_under([](double) { return 0.0; }, 1, -1); });
   claim("V-CONT-28", accepted, 0, "bad inputs accepted");
+}
+
+TEST_CASE("V-CONT-37 a free tool follows its force with order 2, and its damper's heat is booked") {
+  constexpr double mass = 2e-3, T = 8;
+  // High above a sheet that it never meets.
+  const auto fly = [](auto force, double rate) {
+    const auto m = rectangle(5, 5, 1, 1);
+    CentralDifference<Lane> run(NodalState<double>(m, areal_mass), areal_mass);
+    run.add(tool<Lane>(Plane<double>({0, 0, 0}, {0, 0, 1}),
+                       ToolMotion::free_under(force, mass, rate, -1000), {}, 4));
+    return run;
+  };
+  // F = c t: z = c t^3 / (6 M) without a damper; with it, F/(a M) - c/(a^2 M) of the speed at last.
+  constexpr double c = 1e-4;
+  const auto error = [&](double rate, int steps) {
+    auto run = fly([](double t) { return c * t; }, rate);
+    run.start(T / steps);
+    for (int k = 0; k < steps; ++k) run.step();
+    const double a = rate;
+    const double z = a == 0 ? c * T * T * T / (6 * mass)
+                            : c / (a * mass) * (T * T / 2 - T / a - std::expm1(-a * T) / (a * a));
+    return run.tools()[0]->position() + 1000 - z;
+  };
+  // Two more orders are lost in (dt / T)^2 = 2.4e-4; without a damper the error is c T dt^2 / 6 M.
+  for (double rate : {0.0, 0.5})
+    claim("V-CONT-37", std::abs(error(rate, 64) / error(rate, 128) - 4), 0.01,
+          "ratio of errors of the position at half the step, off 4");
+  claim("V-CONT-37", std::abs(error(0, 64) / (-c * T * (T / 64) * (T / 64) / (6 * mass)) - 1), 1e-9,
+        "error of the position against the scheme's own, relative");
+
+  // The ledger's residual keeps its first value, and the damper's heat is that of the closed form.
+  constexpr double rate = 0.5, force = 0.01;
+  auto run = fly([](double) { return force; }, rate);
+  run.start(T / 64);
+  EnergyLedger first, now;
+  run.step(&first);
+  double drift = 0;
+  while (run.time() < T) {
+    run.step(&now);
+    drift = std::max(drift, std::abs(now.residual() - first.residual()));
+  }
+  REQUIRE(now.contact_damping > 0.1 * now.external);
+  claim("V-CONT-37", drift / now.external, 1e-14, "change of the residual over the force's work");
+  const double v = force / (rate * mass), t = now.time;  // v (1 - e^(-a t)), squared and summed
+  const double heat =
+      mass * rate * v * v *
+      (t + 2 * std::expm1(-rate * t) / rate - std::expm1(-2 * rate * t) / (2 * rate));
+  claim("V-CONT-37", std::abs(now.contact_damping / heat - 1), 1e-3,
+        "heat of the tool's damper, relative");  // (a dt)^2 / 12 = 3e-4
 }
 
 TEST_SUITE_END();

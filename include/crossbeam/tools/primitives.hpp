@@ -82,6 +82,7 @@ class Sphere {
     return detail::round_gap(p - detail::spread<T>(centre_), radius_, {R(0), R(0), R(1)});
   }
 
+  [[nodiscard]] R width() const { return R(2) * radius_; }
   [[nodiscard]] Sphere offset(R d) const { return {centre_, radius_, d}; }
 
  private:
@@ -116,6 +117,7 @@ class Cylinder {
     return detail::round_gap(arm - dot(arm, e) * e, radius_, across_);
   }
 
+  [[nodiscard]] R width() const { return R(2) * radius_; }
   [[nodiscard]] Cylinder offset(R d) const { return {point_, axis_, radius_, d}; }
 
  private:

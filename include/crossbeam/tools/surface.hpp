@@ -37,6 +37,22 @@ concept HasFlatPart = requires(const S& surface, const Vec3<T>& point) {
   { surface.flat_gap(point) } -> std::same_as<SurfaceGap<T>>;
 };
 
+/// A tool that knows its width [length]: of all slabs between two parallel planes that contain it,
+/// the thinnest; infinite where there is none.
+template <class S>
+concept HasWidth = requires(const S& surface) {
+  { surface.width() } -> std::convertible_to<double>;
+};
+
+/// The width of a tool, and infinite where the tool does not say.
+template <class S>
+[[nodiscard]] double smallest_width(const S& surface) {
+  if constexpr (HasWidth<S>)
+    return static_cast<double>(surface.width());
+  else
+    return std::numeric_limits<double>::infinity();
+}
+
 /// A height z = h(x, y) with its gradient.
 template <class T>
 struct HeightSample {
