@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Reference integrators and statics by SUNDIALS (6.4 or later 6.x): opt-in, not part of the
+/// Reference integrators and statics by SUNDIALS (6.4 or later, 7 included): opt-in, not part of the
 /// umbrella. A program that includes it links crossbeam::sundials (find_package(crossbeam COMPONENTS
 /// sundials)). Theory: docs/theory/reference.md, [R-3].
 
@@ -424,7 +424,12 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
   detail::ensure(KINSetScaledStepTol(kin, 1e-15), "KINSetScaledStepTol");
   // Where yarns pass between taut and slack, short steps are the way and no failure.
   detail::ensure(KINSetMaxBetaFails(kin, options.iterations), "KINSetMaxBetaFails");
-  detail::ensure(KINSetErrFile(kin, nullptr), "KINSetErrFile");  // the result says what came of it
+  // The result says what came of it, not a line on the terminal.
+#if SUNDIALS_VERSION_MAJOR >= 7
+  SUNContext_ClearErrHandlers(context);
+#else
+  detail::ensure(KINSetErrFile(kin, nullptr), "KINSetErrFile");
+#endif
   if (options.largest_step > 0)
     detail::ensure(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
 

@@ -224,7 +224,7 @@ class CentralDifference {
     }
     book(0, 1, dt_ / 2);
     end_step(fastest);
-    if (sample && !std::isfinite(sample->residual()))
+    if (sample && !is_finite(sample->residual()))
       throw RunError(when() + "an entry of the energy ledger is not a finite number");
   }
 
@@ -258,7 +258,7 @@ class CentralDifference {
     double furthest = 0;
     for (std::size_t k = 0; k < model_.tools.size(); ++k) {
       const double moved = model_.tools[k]->advance(time, dt_, flight);
-      if (!std::isfinite(moved))
+      if (!is_finite(moved))
         throw RunError(when() + "tool " + std::to_string(k) +
                        " is at z = " + detail::to_text(model_.tools[k]->position()) +
                        " mm: its motion z(t) or force F(t) gives no number");
@@ -282,7 +282,7 @@ class CentralDifference {
     for (int n = 0; n < model_.state.node_count; ++n) {
       const Vec3<R> v = model_.state.v.get(n);
       const double speed_squared = static_cast<double>(dot(v, v));
-      if (!std::isfinite(speed_squared)) return n;
+      if (!is_finite(speed_squared)) return n;
       if (speed_squared > most) fastest = n;
       most = maximum(most, speed_squared);
     }
@@ -338,7 +338,7 @@ class CentralDifference {
     }
     const double total = static_cast<double>(lane_sum(sum));
     const double speed =
-        std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
+        is_finite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
     sums(level, flight) = {speed, 0};
     level_travel_[level] += speed * dt_;
   }

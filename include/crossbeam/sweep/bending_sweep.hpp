@@ -13,9 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <compare>
 #include <map>
 #include <set>
+#include <tuple>
 #include <type_traits>
 
 namespace crossbeam {
@@ -72,7 +72,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
     for (int n = 0; n < mesh.node_count; ++n) {
       const double omega_squared = row_sum[n] / (area[n] * areal_mass);  // Gershgorin
-      if (!std::isfinite(omega_squared))
+      if (!is_finite(omega_squared))
         throw InputError("squared bending frequency of mesh.nodes[" + std::to_string(n) + "]",
                          detail::to_text(omega_squared), "1/ms^2", "a finite number");
       omega_squared_ = maximum(omega_squared_, omega_squared);
@@ -123,7 +123,10 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     bool is_long;
     int family;
     std::vector<int> mirrors;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& other) const {  // libc++ 16 compares no vectors by <=>
+      return std::tie(is_long, family, mirrors) <
+             std::tie(other.is_long, other.family, other.mirrors);
+    }
   };
   static int label(int node, int mirror) { return node * 4 + mirror; }
 

@@ -81,7 +81,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
             "the law's " + detail::to_text(static_cast<double>(law_.reference().delta) * 180 /
                                            std::numbers::pi));
       const double omega_squared = element_omega_squared(mesh, e, stiffness, areal_mass);
-      if (!std::isfinite(omega_squared))
+      if (!is_finite(omega_squared))
         throw InputError("squared frequency of mesh.elements[" + std::to_string(e) + "]",
                          detail::to_text(omega_squared), "1/ms^2", "a finite number");
       omega_squared_ = maximum(omega_squared_, omega_squared);

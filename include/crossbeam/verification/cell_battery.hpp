@@ -195,8 +195,8 @@ template <class Cell>
 void verify_cell_solver(Battery& battery, const Cell& cell, const CellScale& scale) {
   Random random(5003);
   const auto finite = [](const CellForces<double>& f) {
-    return std::isfinite(f.F1) && std::isfinite(f.F2) && std::isfinite(f.w1) &&
-           std::isfinite(f.w2) && std::isfinite(f.q);
+    return is_finite(f.F1) && is_finite(f.F2) && is_finite(f.w1) && is_finite(f.w2) &&
+           is_finite(f.q);
   };
   double failures = 0;
   Curve sweeps{"states", {}, {}, Curve::Style::line};
