@@ -10,11 +10,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <locale>
 #include <map>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #ifndef CROSSBEAM_SCENE_DIR
@@ -424,9 +427,18 @@ class FieldSetter {
   }
   template <class T>
   bool parse(T& value) const {
-    const char* end = text_.data() + text_.size();
-    const auto [stop, error] = std::from_chars(text_.data(), end, value);
-    return error == std::errc{} && stop == end;
+#if !defined(__cpp_lib_to_chars)  // libc++ before its version 20 has from_chars of integers only
+    if constexpr (std::is_floating_point_v<T>) {
+      std::istringstream text(text_);
+      text.imbue(std::locale::classic());
+      return !text_.starts_with('+') && text >> std::noskipws >> value && text.peek() == EOF;
+    } else
+#endif
+    {
+      const char* end = text_.data() + text_.size();
+      const auto [stop, error] = std::from_chars(text_.data(), end, value);
+      return error == std::errc{} && stop == end;
+    }
   }
   [[noreturn]] void refuse(const std::string& unit, const std::string& admissible) const {
     throw InputError(shown_as_, text_, unit == "-" ? "" : unit, admissible);

@@ -5,8 +5,12 @@
 /// (base/simd.hpp). It therefore never branches on a value: it compares, gets a mask (bool or a
 /// lane mask) and selects.
 
+#include "crossbeam/base/version.hpp"
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -45,6 +49,21 @@
 #endif
 
 namespace crossbeam {
+
+/// Whether x is a number and finite; of float and double by the exponent's bits, for under
+/// -ffast-math compilers take std::isfinite for true. (By reference: there clang gives an argument
+/// that is a NaN no defined value.)
+template <class T>
+CROSSBEAM_INLINE bool is_finite(const T& x) {
+  if constexpr (std::is_same_v<T, double>) {
+    return std::bit_cast<std::uint64_t>(x) << 1 < std::uint64_t{0x7ff} << 53;
+  } else if constexpr (std::is_same_v<T, float>) {
+    return std::bit_cast<std::uint32_t>(x) << 1 < std::uint32_t{0xff} << 24;
+  } else {
+    using std::isfinite;
+    return isfinite(x);
+  }
+}
 
 /// Specialised by packs and dual numbers.
 template <class T>
@@ -85,11 +104,11 @@ CROSSBEAM_INLINE constexpr bool any(bool condition) { return condition; }
 CROSSBEAM_INLINE constexpr bool all(bool condition) { return condition; }
 
 template <class T>
-CROSSBEAM_INLINE T maximum(const T& a, const T& b) {
+CROSSBEAM_INLINE constexpr T maximum(const T& a, const T& b) {
   return select(a < b, b, a);
 }
 template <class T>
-CROSSBEAM_INLINE T minimum(const T& a, const T& b) {
+CROSSBEAM_INLINE constexpr T minimum(const T& a, const T& b) {
   return select(b < a, b, a);
 }
 template <class T>

@@ -59,7 +59,7 @@ template <int Corners>
     for (int i = 0; i < Corners; ++i)
       for (int j = 0; j < i; ++j) {
         const Vec3<double> across = mesh.nodes.get(element[i]) - mesh.nodes.get(element[j]);
-        squared = std::max(squared, dot(across, across));
+        squared = maximum(squared, dot(across, across));
       }
   return std::sqrt(squared);
 }

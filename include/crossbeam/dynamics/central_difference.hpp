@@ -97,7 +97,7 @@ class CentralDifference {
   void advance(long long steps) {
     while (steps > 0) {
       const int together =
-          steps_ == 0 ? 1 : static_cast<int>(std::min<long long>(steps, in_flight()));
+          steps_ == 0 ? 1 : static_cast<int>(minimum<long long>(steps, in_flight()));
       if (together > 1) {
         begin_unbroken();
         step_together(together);
@@ -112,7 +112,7 @@ class CentralDifference {
   /// As many steps as it takes until `time` is reached.
   void advance_until(double time) {
     require_finite("time", time, "ms");
-    while (time_ < time) advance(std::max(1LL, static_cast<long long>((time - time_) / dt_)));
+    while (time_ < time) advance(maximum<long long>(1, static_cast<long long>((time - time_) / dt_)));
   }
 
   /// Steps that `advance` has in flight at a time: one with several threads, with few levels, and where
@@ -209,7 +209,7 @@ class CentralDifference {
       double furthest = 0;
       for (std::size_t k = 0; k < model_.tools().size(); ++k) {
         model_.tools()[k]->begin(levels(), begin_of(flight), dt_, flight);
-        furthest = std::max(furthest, moved(k, model_.tools()[k]->prescribed_travel(dt_, flight)));
+        furthest = maximum(furthest, moved(k, model_.tools()[k]->prescribed_travel(dt_, flight)));
       }
       tool_travel_ += furthest;
     }
@@ -263,7 +263,7 @@ class CentralDifference {
     if (sample) *sample = ledger;
     book(BookedTime::from_now(dt_));
     end_step(fastest, 0);
-    if (sample && !std::isfinite(sample->residual()))
+    if (sample && !is_finite(sample->residual()))
       throw RunError(when() + "an entry of the energy ledger is not a finite number");
   }
 
@@ -301,12 +301,12 @@ class CentralDifference {
     const double time = static_cast<double>(steps_) * dt_;
     double furthest = 0;
     for (std::size_t k = 0; k < model_.tools().size(); ++k)
-      furthest = std::max(furthest, moved(k, model_.tools()[k]->move(time, dt_, flight)));
-    tool_travel_ = std::max(tool_travel_, flight_travel_[flight] + furthest);
+      furthest = maximum(furthest, moved(k, model_.tools()[k]->move(time, dt_, flight)));
+    tool_travel_ = maximum(tool_travel_, flight_travel_[flight] + furthest);
   }
   /// @throws RunError for a tool that moves a distance of NaN or infinity
   double moved(std::size_t tool, double distance) const {
-    if (!std::isfinite(distance))
+    if (!is_finite(distance))
       throw RunError(when() + "tool " + std::to_string(tool) +
                      " is at z = " + detail::to_text(model_.tools()[tool]->position()) +
                      " mm: its motion z(t) or force F(t) is not a finite number");
@@ -330,9 +330,9 @@ class CentralDifference {
     for (int n = 0; n < model_.nodes().node_count; ++n) {
       const Vec3<R> v = model_.nodes().v.get(n);
       const double speed_squared = static_cast<double>(dot(v, v));
-      if (!std::isfinite(speed_squared)) return n;
+      if (!is_finite(speed_squared)) return n;
       if (speed_squared > most) fastest = n;
-      most = std::max(most, speed_squared);
+      most = maximum(most, speed_squared);
     }
     return fastest;
   }
@@ -380,7 +380,7 @@ class CentralDifference {
     }
     const double total = static_cast<double>(lane_sum(sum));
     const double speed =
-        std::isfinite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
+        is_finite(total) ? std::sqrt(static_cast<double>(lane_maximum(fastest))) : total;
     sums(level, flight) = {speed, 0};
     level_travel_[level] += speed * dt_;
   }

@@ -40,12 +40,12 @@ inline double ring_radius(const std::vector<StencilNeighbour>& ring) {
   double size = 0;
   for (const auto& n : ring) {
     const double distance = std::hypot(n.along, n.across);
-    if (!std::isfinite(distance)) return 0;
-    size = std::max(size, distance);
+    if (!is_finite(distance)) return 0;
+    size = maximum(size, distance);
   }
   const double squared = size * size;
-  return squared >= Limits::min() / Limits::epsilon() &&
-                 squared <= Limits::max() * Limits::epsilon()
+  return squared >= (Limits::min)() / Limits::epsilon() &&
+                 squared <= (Limits::max)() * Limits::epsilon()
              ? size
              : 0;
 }
@@ -69,7 +69,7 @@ inline std::vector<StencilWeight> three_point_difference(
   if (!ahead || !behind) return {};
   const double a = ahead->along, b = -behind->along;
   const double wa = 2 / (a * (a + b)), wb = 2 / (b * (a + b));
-  if (!std::isfinite(wa + wb)) return {};
+  if (!is_finite(wa + wb)) return {};
   return {{behind->id, wb}, {centre, -(wa + wb)}, {ahead->id, wa}};
 }
 

@@ -223,9 +223,8 @@ namespace detail {
 /// Whether every entry is a number and finite.
 template <class Derived>
 bool all_finite(const Eigen::MatrixBase<Derived>& a) {
-  using std::isfinite;
   for (Eigen::Index i = 0; i < a.size(); ++i)
-    if (!isfinite(passive(a.derived().coeff(i / a.cols(), i % a.cols())))) return false;
+    if (!is_finite(passive(a.derived().coeff(i / a.cols(), i % a.cols())))) return false;
   return true;
 }
 
@@ -262,17 +261,23 @@ MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
     CROSSBEAM_EXPECTS(want == Tangent::no);
   }
   if (out.status == CellStatus::converged) {
-    using std::isfinite;
     const T cosine = fibre_cosine(state.fibres.beta, state.fibres.lambda1, state.fibres.lambda2,
                                   law.reference().cosine);
     const bool tangent = want == Tangent::yes;
     if (!(magnitude(cosine) < T(R(1) - R(8) * std::numeric_limits<R>::epsilon())))
       out.status = CellStatus::outside_kinematics;
-    else if (!(detail::all_finite(out.S) && isfinite(passive(out.energy)) &&
+    else if (!(detail::all_finite(out.S) && is_finite(passive(out.energy)) &&
                (!tangent || detail::all_finite(out.dS_dE))))
       out.status = CellStatus::not_converged;
   }
   return out;
+}
+
+/// The same for a strain in another matrix or expression of Eigen.
+template <class Law, class Strain>
+  requires std::is_base_of_v<Eigen::MatrixBase<Strain>, Strain>
+auto membrane_response(const Law& law, const Strain& E, Tangent want = Tangent::no) {
+  return membrane_response(law, Matrix2<typename Strain::Scalar>(E), want);
 }
 
 /// Cauchy stress (Eq. 21) from S and the surface gradient; J is the area ratio. For a host whose J
