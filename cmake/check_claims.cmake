@@ -5,7 +5,7 @@
 #   page names an ID that is not in the table; no ID has two rows.
 # - A tag such as [C-7] is defined by a line of docs/theory that starts with "**[C-7]**", exactly
 #   once; headers cite defined tags only, and every defined tag is cited by a header.
-# - docs/tags.md says on which page each tag is defined, in the order of the tags. It is written anew by
+# - docs/tags.md says on which page each tag is defined, in the order of the tags. This writes it:
 #   cmake -DROOT=<repository> -DWRITE_TAGS=ON -P cmake/check_claims.cmake
 cmake_minimum_required(VERSION 3.24)
 
@@ -111,7 +111,8 @@ foreach(file IN LISTS theory_files)
       string(LENGTH "${CMAKE_MATCH_2}" digits)
       math(EXPR padding "4 - ${digits}")
       string(REPEAT "0" ${padding} zeros)
-      list(APPEND index "${CMAKE_MATCH_1}-${zeros}${CMAKE_MATCH_2} | <${page}>(theory/${page}.md) | ${section} |\n")
+      set(tag "${CMAKE_MATCH_1}-${zeros}${CMAKE_MATCH_2}")
+      list(APPEND index "${tag} | <${page}>(theory/${page}.md) | ${section} |\n")
     endif()
   endforeach()
 endforeach()
@@ -138,7 +139,8 @@ if(EXISTS "${ROOT}/docs/tags.md")
   file(READ "${ROOT}/docs/tags.md" tags_found)
 endif()
 if(NOT tags_found STREQUAL tags_page)
-  string(APPEND faults "  docs/tags.md is not the list of the tags in docs/theory: write it anew by\n"
+  string(APPEND faults
+    "  docs/tags.md is not the list of the tags in docs/theory: write it anew by\n"
     "    cmake -DROOT=<repository> -DWRITE_TAGS=ON -P cmake/check_claims.cmake\n")
 endif()
 

@@ -1,5 +1,6 @@
 # Makes the release archive from a clean clone of HEAD and tries it as a user would: unpacked,
-# installed, found by the consumer of verify/packaging, its version compared with the archive's name.
+# installed, found by the consumer of verify/packaging, its version compared with the archive's
+# name.
 #   cmake -P cmake/release.cmake
 # leaves out/release/crossbeam-<version>.tar.gz and prints its path and its SHA-256.
 #   -DREPOSITORY=<another repository>  -DOUT=<another folder>

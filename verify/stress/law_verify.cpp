@@ -1,4 +1,5 @@
-// Kinematics and law under any strain: finite or refused, never a stress of a strain that cannot be.
+// Kinematics and law under any strain: finite or refused, never a stress of a strain that cannot
+// be.
 
 #include "fuzz/properties.hpp"
 #include "law/laws.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 /// @file
 /// Reference integrators and statics by SUNDIALS (6.4 or later 6.x): opt-in, not part of the
-/// umbrella. A program that includes it links crossbeam::sundials (find_package(crossbeam COMPONENTS
-/// sundials)). Theory: docs/theory/reference.md, [R-3].
+/// umbrella. A program that includes it links crossbeam::sundials (find_package(crossbeam
+/// COMPONENTS sundials)). Theory: docs/theory/reference.md, [R-3].
 
 #include "crossbeam/model/first_order_system.hpp"
 #include "crossbeam/model/statics.hpp"
@@ -198,7 +198,7 @@ class Integrator {
   virtual void evolve(double t) = 0;
   [[nodiscard]] virtual long long steps() const = 0;
 
-  /// Right-hand side; an answer that is no number asks for a smaller step.
+  /// Right-hand side; an answer that is NaN asks for a smaller step.
   static int rate(sunrealtype t, N_Vector y, N_Vector dy, void* self) {
     FirstOrderSystem& system = static_cast<Integrator*>(self)->system_;
     double* out = N_VGetArrayPointer(dy);
