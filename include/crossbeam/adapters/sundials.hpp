@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -369,7 +370,9 @@ class ResidualForm final : public Integrator {
 struct StaticOptions {
   double tolerance = 1e-10;  ///< largest unbalanced force over the norm of the internal forces [-]
   int iterations = 200;      ///< at most
-  double largest_step = 0;   ///< of all unknowns together in one iteration [mm]; 0: no bound
+  static constexpr double no_bound = std::numeric_limits<double>::infinity();
+  /// Bound of one iteration's step, the norm over all unknowns [mm]; > 0, or `no_bound`.
+  double largest_step = no_bound;
 };
 
 struct StaticResult {
@@ -400,7 +403,8 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
     }
   };
   require_positive("statics.tolerance", options.tolerance, "-");
-  require_non_negative("statics.largest_step", options.largest_step, "mm");
+  const bool is_bounded = options.largest_step != StaticOptions::no_bound;
+  if (is_bounded) require_positive("statics.largest_step", options.largest_step, "mm");
 
   ::sundials::Context context;
   const int n = problem.unknowns();
@@ -424,7 +428,7 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
   // Where yarns pass between taut and slack, short steps are the way and no failure.
   detail::check(KINSetMaxBetaFails(kin, options.iterations), "KINSetMaxBetaFails");
   detail::check(KINSetErrFile(kin, nullptr), "KINSetErrFile");  // the result says what came of it
-  if (options.largest_step > 0)
+  if (is_bounded)
     detail::check(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
 
   // The internal forces of the start may be far from those of the end: once more with the latter.
