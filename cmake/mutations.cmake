@@ -62,7 +62,7 @@ function(mutation script expected file)
 endfunction()
 
 write_healthy_tree()
-foreach(script IN ITEMS layering check_claims check_version check_snippets)
+foreach(script IN ITEMS layering check_claims check_version check_snippets check_links)
   run_check("${script}")
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${script} rejected the healthy tree:\n${output}")
@@ -109,6 +109,8 @@ mutation(check_snippets "differs from what the example prints" docs/index.md
 mutation(check_snippets "differs from what the example prints" docs/examples/point.output "z 3\n")
 mutation(check_snippets "no file docs/examples/none.output" docs/index.md
   "<!-- output: docs/examples/none.output -->\n```\nx 1\n```\n")
+
+mutation(check_links "no file theory/none.md" docs/index.md "See [none](theory/none.md#part).\n")
 
 foreach(file IN ITEMS CITATION.cff CHANGELOG.md)
   write_healthy_tree()

@@ -38,7 +38,7 @@ run("cloning" "${GIT}" clone --quiet --no-hardlinks "${REPOSITORY}" "${clone}")
 run("asking git for HEAD" "${GIT}" -C "${REPOSITORY}" rev-parse HEAD)
 set(commit "${printed}")
 run("checking out HEAD" "${GIT}" -C "${clone}" checkout --quiet --detach "${commit}")
-foreach(check IN ITEMS check_version check_claims check_snippets layering)
+foreach(check IN ITEMS check_version check_claims check_snippets check_links layering)
   run("${check}" "${CMAKE_COMMAND}" "-DROOT=${clone}" -P "${clone}/cmake/${check}.cmake")
 endforeach()
 
