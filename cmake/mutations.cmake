@@ -16,15 +16,15 @@ function(write_healthy_tree)
   file(WRITE "${tree}/include/crossbeam/cell/cell.hpp"
     "#include \"crossbeam/base/linalg.hpp\"\n#include <cmath>\n/// Energy, [C-1].\n")
   file(WRITE "${tree}/include/crossbeam/adapters/adapter.hpp" "#include <library/library.h>\n")
-  file(WRITE "${tree}/verify/README.md" "| ID | Statement |\n| --- | --- |\n| V-CELL-01 | text |\n")
-  file(WRITE "${tree}/verify/cell/cell_verify.cpp" "TEST_CASE(\"V-CELL-01 text\") {}\n")
-  file(WRITE "${tree}/docs/theory/cell.md" "# Cell\n\n**[C-1]** Energy (V-CELL-01).\n")
   file(WRITE "${tree}/docs/examples/point.cpp"
     "// [begin:law]\nint x = 1;\n// [end:law]\n")
   file(WRITE "${tree}/docs/examples/point.output" "x 1\ny 2\n")
   file(WRITE "${tree}/README.md"
     "<!-- snippet: docs/examples/point.cpp law -->\n```cpp\nint x = 1;\n```\n"
     "<!-- output: docs/examples/point.output -->\n```\nx 1\ny 2\n```\n")
+  file(WRITE "${tree}/verify/README.md" "| ID | Statement |\n| --- | --- |\n| V-CELL-01 | text |\n")
+  file(WRITE "${tree}/verify/cell/cell_verify.cpp" "TEST_CASE(\"V-CELL-01 text\") {}\n")
+  file(WRITE "${tree}/docs/theory/cell.md" "# Cell\n\n**[C-1]** Energy (V-CELL-01).\n")
   file(WRITE "${tree}/CITATION.cff" "title: x\nversion: 0.1.0\n")
   file(WRITE "${tree}/CHANGELOG.md" "# Changelog\n\n## [0.1.0] - today\n\n## [0.0.9] - before\n")
   write_tags()
@@ -62,7 +62,7 @@ function(mutation script expected file)
 endfunction()
 
 write_healthy_tree()
-foreach(script IN ITEMS layering check_claims check_version check_snippets check_links)
+foreach(script IN ITEMS layering check_claims check_version)
   run_check("${script}")
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${script} rejected the healthy tree:\n${output}")
@@ -82,6 +82,14 @@ mutation(layering "detail of another folder" include/crossbeam/cell/cell.hpp
 mutation(layering "third party outside adapters" include/crossbeam/cell/cell.hpp
   "#include <fmt/core.h>\n")
 mutation(layering "is not one of the layers" include/crossbeam/extra/extra.hpp "\n")
+
+write_healthy_tree()
+foreach(script IN ITEMS check_snippets check_links)
+  run_check("${script}")
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${script} rejected the healthy tree:\n${output}")
+  endif()
+endforeach()
 
 mutation(check_claims "V-CELL-02 stands in verify/README.md, but in no test name"
   verify/README.md "| V-CELL-02 | text |\n")
