@@ -75,9 +75,11 @@ def chunk(top):
         rect(200, y, 24 * slot, 14, "#ffffff")
         for b in range(6):
             line(200 + 4 * slot * b, y, 200 + 4 * slot * b, y + 14)
-    text(40, top + 212, "Each loop leaves rows of numbers in the first-level cache. Columns whose nodes are less than 8 "
+    text(40, top + 212, "Each loop leaves rows of numbers in the first-level cache. Columns "
+         "whose nodes are less than 8 "
          "apart form a line: a node gets", 12)
-    text(40, top + 228, "all their forces at once. Here the corners' nodes n, n + 1, n + 6, n + 7 make one "
+    text(40, top + 228, "all their forces at once. Here the corners' nodes n, n + 1, n + 6, n + "
+         "7 make one "
          "line; in a mesh with longer rows they make two.", 12)
 
 
@@ -101,9 +103,11 @@ def levels(top):
         wide = width if s else width / 2  # stage 0: batches inside level 0
         rect(x + 2, top + 52, wide - 4, 22, "#fb6a4a" if seam else "#ffffff")
         text(x + wide / 2, top + 68, str(s), 12, "middle")
-    text(40, top + 122, "A batch touches one level or two neighbours; its stage is the higher one. When "
+    text(40, top + 122, "A batch touches one level or two neighbours; its stage is the higher "
+         "one. When "
          "stage s is done, level s - 1 has all its forces", 12)
-    text(40, top + 138, "and is finished: contact, velocities, positions. Threads take a band each; a stage "
+    text(40, top + 138, "and is finished: contact, velocities, positions. Threads take a band "
+         "each; a stage "
          "that reads two bands is a seam (red) and waits.", 12)
 
 
@@ -121,7 +125,8 @@ def flights(top):
             rect(x, y, width, 24, COLOURS[flight] if live else "#ffffff", "#bbbbbb")
             if live:
                 text(x + width / 2, y + 17, str(order[at]), 12, "middle")
-    text(130, top + 142, "time; the number is the stage whose turn it is. A seam comes one turn later. The steps "
+    text(130, top + 142, "time; the number is the stage whose turn it is. A seam comes one turn "
+         "later. The steps "
          "work within a few levels, which", 12)
     text(130, top + 158, "stay in the cache.", 12)
 

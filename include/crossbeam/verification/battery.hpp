@@ -1,8 +1,8 @@
 #pragma once
 /// @file
 /// A battery is a list of claims that anything of a kind must satisfy: a cell, a yarn law, a shear
-/// law, a membrane law, an element. It is measured on one subject, a user's own, and collected for a
-/// table and a report. The batteries are in cell_battery.hpp, law_battery.hpp and
+/// law, a membrane law, an element. It is measured on one subject, a user's own, and collected for
+/// a table and a report. The batteries are in cell_battery.hpp, law_battery.hpp and
 /// element_battery.hpp; docs/theory/own_laws.md shows how to use them.
 
 #include "crossbeam/verification/evidence.hpp"
