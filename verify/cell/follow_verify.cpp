@@ -174,7 +174,7 @@ TEST_CASE(
   };
   jumps(1.0);
   jumps(1.0F);
-  verify::claim("V-CELL-35", lost, 0, "jumps of up to 50 % whose answer is no number");
+  verify::claim("V-CELL-35", lost, 0, "jumps of up to 50 % whose answer is NaN");
 
   // Lanes.
   int differ = 0;
