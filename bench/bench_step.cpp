@@ -1,8 +1,8 @@
 /// @file
 /// One whole step of the explicit scheme (forces, velocities, positions) on a flat taut sheet that
 /// vibrates: no contact. Options are left out one at a time from what the scene `realistic` uses;
-/// `one_by_one` has no two steps in flight; `policies` are the same with the options of cell and element fixed at compile time
-/// (support/policies.hpp).
+/// `one_by_one` has no two steps in flight; `policies` are the same with the options of cell and
+/// element fixed at compile time (support/policies.hpp).
 ///
 ///   step/<elements>/<options>/<number>
 
@@ -110,7 +110,8 @@ CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options)
   return integrator;
 }
 
-/// Flops of one element and step, counted on the sheet or, where it is larger, on `largest_counted`.
+/// Flops of one element and step, counted on the sheet or, where it is larger, on
+/// `largest_counted`.
 constexpr Sheet largest_counted{100, 200};
 
 template <class R, class Cell, class Quad>

@@ -1,8 +1,8 @@
 # Fails when a header includes against the direction of the layers (CONTRIBUTING.md):
 #   cmake -DROOT=<repository> -P cmake/layering.cmake
 # A header may include its own folder and the folders of the layers before its own; folders that
-# share a layer do not know each other. A folder's detail/ is for that folder alone; the umbrella may
-# include everything up to simulation; outside adapters no third party but Eigen.
+# share a layer do not know each other. A folder's detail/ is for that folder alone; the umbrella
+# may include everything up to simulation; outside adapters Eigen is the only third party.
 cmake_minimum_required(VERSION 3.24)
 
 # One layer a word; folders of the same layer are joined by '|'.

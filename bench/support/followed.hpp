@@ -54,7 +54,8 @@ class FollowedPoints {
     typename Block::VectorRow corner[Quad::corners];
   };
 
-  /// All points at the strains of one ring. `use(first, block)` looks at the answers of every block.
+  /// All points at the strains of one ring. `use(first, block)` looks at the answers of every
+  /// block.
   template <class Use>
   CROSSBEAM_INLINE void visit(std::size_t ring, const Use& use) {
     const Law law = law_;  // a copy that no store can change

@@ -1,7 +1,8 @@
 #pragma once
 /// @file
 /// Everything but the adapters. The order is the way the data flow: parameters -> cell -> law ->
-/// element -> mesh -> model -> sweep, contact -> time step. A header includes its own folder and those before it.
+/// element -> mesh -> model -> sweep, contact -> time step. A header includes its own folder and
+/// those before it.
 
 #include "crossbeam/base/counting.hpp"
 #include "crossbeam/base/dual.hpp"

@@ -1,7 +1,7 @@
 // The kernels as device code: from the corners of an element to its corner forces, one element a
-// thread, and energies and tangents of a point, by the very functions that run on the processor. Compiled without fused multiply-adds
-// on either side, both compute with the same correctly rounded operations: the answers are equal
-// in every bit. Exit code 77: no GPU here, only compiled.
+// thread, and energies and tangents of a point, by the very functions that run on the processor.
+// Compiled without fused multiply-adds on either side, both compute with the same correctly rounded
+// operations: the answers are equal in every bit. Exit code 77: no GPU here, only compiled.
 
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/cell/crossed_beam.hpp"

@@ -82,7 +82,8 @@ struct Scene {
 };
 
 /// @param regular equal elements along the yarns, the same constants for all; else distorted ones
-/// @param gaps most elements of odd row and column are missing: rows leave nodes out all over the place
+/// @param gaps most elements of odd row and column are missing: rows leave nodes out all over the
+/// place
 Scene scene(verify::Random& random, bool regular, bool gaps) {
   const Points X = grid(nx, ny, 5, regular ? 0 : 0.2, random);
   auto elements = cells<4>(nx, ny);

@@ -110,8 +110,8 @@ TEST_CASE(
   // That strain error times the straight yarn's 15 kN/mm.
   tensions.claim("V-ELEM-01", 1e-12, "yarn tensions [kN/mm]");
 
-  // Beyond affine maps: the fibre vectors at each point are the derivatives of the bilinear map there
-  // and the weights its area, both from positions on the element alone, anywhere in space.
+  // Beyond affine maps: the fibre vectors at each point are the derivatives of the bilinear map
+  // there and the weights its area, both from positions on the element alone, anywhere in space.
   Worst fibres, weights;
   const auto at_points = [&](auto element) {
     using Element = decltype(element);

@@ -25,7 +25,8 @@ crossbeam::FibreAngle<R> fibre_angle(int degrees) {
                        : crossbeam::FibreAngle<R>(radians<R>(degrees));
 }
 
-/// Tangent modulus of the fabric of the double dome, G = sum a_k |gamma|^k: two published fits in MPa.
+/// Tangent modulus of the fabric of the double dome, G = sum a_k |gamma|^k: two published fits in
+/// MPa.
 inline const std::vector<double> law_A{0.051, -0.83, 6.1275, -12.0972, 8.48};
 inline const std::vector<double> law_B{0.1948, -1.5928, 6.3822, -9.8228, 6.7135};
 

@@ -1,5 +1,5 @@
-// Stress, tangent and energy of the woven membrane against the reference table, and the places where
-// the paper's printed equations fail.
+// Stress, tangent and energy of the woven membrane against the reference table, and the places
+// where the paper's printed equations fail.
 
 #include "crossbeam/law/woven_membrane.hpp"
 

@@ -34,7 +34,8 @@ FibreState<double> pure_shear(double gamma, int degrees) {
   return fibre_state(0.0, 0.0, 0.5 * (std::cos(delta - gamma) - std::cos(delta)));
 }
 
-/// The traction conjugate to gamma in pure shear, from the law's gradient: dW/dbeta12 dbeta12/dgamma.
+/// The traction conjugate to gamma in pure shear, from the law's gradient: dW/dbeta12
+/// dbeta12/dgamma.
 template <class Shear>
 double traction(const Shear& shear, double gamma, int degrees) {
   const double delta = verify::radians<double>(degrees);

@@ -148,7 +148,7 @@ TEST_CASE(
                 Kind::name, way);
     }
     // Collapsed to a point, to a line along a yarn or across, coordinates of no size, of any size,
-    // of none: the time integration must not let a number pass that is none.
+    // NaN: the time integration must not let them pass.
     const std::vector<std::function<Eigen::Vector3d(const Eigen::Vector3d&)>> maps{
         [](const Eigen::Vector3d&) { return Eigen::Vector3d(0, 0, 0); },
         [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x(), 0, 0); },
@@ -186,7 +186,7 @@ TEST_CASE(
   REQUIRE(checked == 3 * (5 + 2 * 13));
   REQUIRE(stopped > 20);
   claim("V-STRESS-07", static_cast<double>(silent), 0,
-        "collapsed, inverted or infinite states with numbers that are none and no RunError");
+        "collapsed, inverted or infinite states with NaN and no RunError");
   // The same products in the same order, but for their signs.
   mirrored.claim("V-STRESS-07", 1e-13, "energy and forces of turned-over elements, mirrored");
   // Central differences with steps of 1e-5 mm at elements of 3 mm.
@@ -320,7 +320,7 @@ TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and
   REQUIRE(stopped > 100);
   REQUIRE(finite > 100);
   claim("V-STRESS-08", static_cast<double>(silent), 0,
-        "runs with numbers that are none and no RunError, or a RunError without node, tool or "
+        "runs with NaN and no RunError, or a RunError without node, tool or "
         "ledger");
 }
 

@@ -123,7 +123,7 @@ TEST_CASE("V-STRESS-05 a tool of any size is refused or answers at every point")
   REQUIRE(asked > 100000);
   REQUIRE(refused > 500);
   claim("V-STRESS-05", static_cast<double>(broken), 0,
-        "gaps that are no number, normals that are no unit vectors, NaN points that touch");
+        "gaps that are NaN, normals that are no unit vectors, NaN points that touch");
   // A table that would fill the memory is refused before it does.
   CHECK_THROWS_AS(HeightTable<double>([](double, double) { return 0.0; },
                                       HeightTableGrid<double>{0, 1, 0, 1, 1e-4 / 1.5}),

@@ -45,8 +45,8 @@ TEST_CASE(
   claim("V-REF-08", r.residual, 1e-10,
         "largest unbalanced force over the internal forces, " + std::to_string(r.iterations) +
             " iterations, " + std::to_string(r.backtracks) + " backtracks");
-  // The digits double until they end in round-off, which may take two iterations: the order is that of
-  // the last iteration that ended clearly above the last force.
+  // The digits double until they end in round-off, which may take two iterations: the order is that
+  // of the last iteration that ended clearly above the last force.
   std::size_t last = n - 2;
   while (last > 2 && !(r.history[last] > 10 * r.history[n - 1])) --last;
   claim({"V-REF-08",

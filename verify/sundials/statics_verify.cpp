@@ -17,8 +17,8 @@ using reference::StaticResult;
 using verify::claim;
 
 /// A sheet whose rim is put to an affine map of its plane; inside, the nodes start off their places
-/// by up to 0.3 mm; of slack sheets in the plane: how they buckle out of it is another question, with
-/// many answers.
+/// by up to 0.3 mm; of slack sheets in the plane: how they buckle out of it is another question,
+/// with many answers.
 struct HeldSheet {
   static constexpr int n = 8;
   Mesh<4> sheet = rectangle(40, 40, n, n, 0.3);
@@ -130,7 +130,7 @@ TEST_CASE(
   double unbalanced = 0, moved = 0;
   std::string table;
   std::vector<double> at, distances;
-  // The scheme's rest is approached with its damping; how far away the equilibrium is falls with it.
+  // The run comes to rest by its damping; its distance from the equilibrium falls with it.
   for (double t : {1.5, 2.0, 3.0}) {
     while (run.time() < t * sheet.duration) run.step();
     const Points before = positions(run.model());

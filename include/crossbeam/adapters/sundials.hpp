@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -199,7 +200,7 @@ class Integrator {
   virtual void evolve(double t) = 0;
   [[nodiscard]] virtual long long steps() const = 0;
 
-  /// Right-hand side; an answer that is no number asks for a smaller step.
+  /// Right-hand side; an answer that is NaN asks for a smaller step.
   static int rate(sunrealtype t, N_Vector y, N_Vector dy, void* self) {
     FirstOrderSystem& system = static_cast<Integrator*>(self)->system_;
     double* out = N_VGetArrayPointer(dy);
@@ -370,7 +371,9 @@ class ResidualForm final : public Integrator {
 struct StaticOptions {
   double tolerance = 1e-10;  ///< largest unbalanced force over the norm of the internal forces [-]
   int iterations = 200;      ///< at most
-  double largest_step = 0;   ///< of all unknowns together in one iteration [mm]; 0: no bound
+  static constexpr double no_bound = std::numeric_limits<double>::infinity();
+  /// Bound of one iteration's step, the norm over all unknowns [mm]; > 0, or `no_bound`.
+  double largest_step = no_bound;
 };
 
 struct StaticResult {
@@ -401,7 +404,8 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
     }
   };
   require_positive("statics.tolerance", options.tolerance, "-");
-  require_non_negative("statics.largest_step", options.largest_step, "mm");
+  const bool is_bounded = options.largest_step != StaticOptions::no_bound;
+  if (is_bounded) require_positive("statics.largest_step", options.largest_step, "mm");
 
   ::sundials::Context context;
   const int n = problem.unknowns();
@@ -430,7 +434,7 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
 #else
   detail::ensure(KINSetErrFile(kin, nullptr), "KINSetErrFile");
 #endif
-  if (options.largest_step > 0)
+  if (is_bounded)
     detail::ensure(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
 
   // The internal forces of the start may be far from those of the end: once more with the latter.

@@ -41,7 +41,7 @@
 #define CROSSBEAM_INLINE_LAMBDA
 #endif
 
-/// The same for what stays on the processor: the vector types of packs are none to a device.
+/// The same for what stays on the processor: a device does not know the vector types of packs.
 #if defined(__CUDACC__)
 #define CROSSBEAM_HOST_INLINE __forceinline__
 #else
@@ -65,7 +65,7 @@ CROSSBEAM_INLINE bool is_finite(const T& x) {
   }
 }
 
-/// Specialised by packs and dual numbers.
+/// What the kernels know about a scalar type. Packs and dual numbers specialise it.
 template <class T>
 struct ScalarTraits {
   using Real = T;                             ///< type of the constants a kernel mixes with T
@@ -81,7 +81,7 @@ using passive_t = typename ScalarTraits<T>::Passive;
 template <class T>
 inline constexpr int lanes_v = ScalarTraits<T>::lanes;
 
-/// As many lanes of double as T has: what positions are moved in. Specialised by packs.
+/// The type of positions: as many lanes of double as T has. Packs specialise it.
 template <class T>
 struct DoubleLanes {
   using type = T;
@@ -89,7 +89,7 @@ struct DoubleLanes {
 template <class T>
 using double_lanes_t = typename DoubleLanes<T>::type;
 
-/// Value without derivatives; overloaded for dual numbers.
+/// The value without its derivatives. Dual numbers overload it.
 template <class T>
   requires(ScalarTraits<T>::derivative_order == 0)
 CROSSBEAM_INLINE constexpr const T& passive(const T& x) {
@@ -131,8 +131,8 @@ CROSSBEAM_INLINE T square(const T& a) {
   return a * a;
 }
 
-/// body(0), ..., body(N - 1), unrolled: arrays of packs that a loop would index at run time have to live
-/// in memory, these do not. The indices are integral constants.
+/// Calls body(0), ..., body(N - 1), unrolled; the indices are integral constants. Arrays of packs
+/// that a loop would index at run time have to live in memory, these do not.
 template <int N, class Body>
 CROSSBEAM_INLINE void unrolled(const Body& body) {
   [&]<int... k>(std::integer_sequence<int, k...>) CROSSBEAM_INLINE_LAMBDA {
@@ -146,7 +146,7 @@ constexpr real_t<T> epsilon_of() {
   return std::numeric_limits<real_t<T>>::epsilon();
 }
 
-/// Largest value over the lanes; the value itself for plain scalars.
+/// The largest value over the lanes; for plain scalars, the value itself.
 template <class T>
   requires(ScalarTraits<T>::lanes == 1)
 CROSSBEAM_INLINE T lane_maximum(const T& x) {
@@ -165,8 +165,8 @@ CROSSBEAM_INLINE T per_lane(const T& x, Op op) {
   return op(x);
 }
 
-/// Aggregate of three components that any scalar can fill: points, directions and forces in the
-/// kernels. (Eigen carries the public matrices; inside a SIMD sweep a plain struct optimises better.)
+/// Three components of any scalar: the points, directions and forces of the kernels. (The public
+/// matrices are Eigen's; inside a SIMD sweep compilers optimise a plain struct better.)
 template <class T>
 struct Vec3 {
   T x, y, z;

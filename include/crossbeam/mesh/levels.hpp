@@ -1,8 +1,8 @@
 #pragma once
 /// @file
 /// Levels of a mesh: its nodes in a sequence of sets such that the nodes of an element stand in one
-/// of them or in two neighbouring ones. Found by breadth-first search, or read off the numbering that
-/// a mesh has. Theory: docs/theory/sweep.md, "Numbering".
+/// of them or in two neighbouring ones. A breadth-first search finds them, or they are read off the
+/// numbering that a mesh has. Theory: docs/theory/sweep.md, "Numbering".
 
 #include "crossbeam/base/scalar.hpp"
 #include "crossbeam/mesh/mesh.hpp"
@@ -58,12 +58,12 @@ class LevelSearch {
     return search(std::move(roots), [](int) { return true; });
   }
 
-  /// All that is connected with a node, in the narrowest levels tried: from a pseudo-peripheral node
-  /// (George and Liu), from all nodes of the farthest level, and from half of those.
+  /// All that is connected with a node, in the narrowest levels tried: from a pseudo-peripheral
+  /// node (George and Liu), from all nodes of the farthest level, and from half of those.
   Levels part(int any_node) {
     Levels from_node = search({any_node});
-    // Each turn but the last lengthens the levels; in practice two to four. The bound keeps the cost
-    // in proportion to the mesh whatever the mesh.
+    // Each turn but the last lengthens the levels; in practice two to four. The bound keeps the
+    // cost in proportion to the mesh whatever the mesh.
     for (int turn = 0, depth = 0; turn < 8 && from_node.count() > depth; ++turn) {
       depth = from_node.count();
       const std::vector<int> farthest = from_node.last();
@@ -155,10 +155,10 @@ Levels node_levels(const Mesh<Corners>& mesh) {
   for (int n = 0; n < mesh.node_count; ++n)
     if (!walk.seen(n))
       for (int m : walk.search({n}).node) walked.push_back(m);
-  const std::vector<int> place = inverse(walked);
+  const std::vector<int> new_node = inverse(walked);
   auto elements = mesh.elements;
   for (auto& element : elements)
-    for (int& n : element) n = place[n];
+    for (int& n : element) n = new_node[n];
   std::sort(elements.begin(), elements.end());
   detail::LevelSearch<Corners> search(mesh.node_count, elements);
   Levels out;
@@ -174,8 +174,8 @@ Levels node_levels(const Mesh<Corners>& mesh) {
 
 /// Levels of a mesh without numbering it anew: blocks of consecutive nodes such that every element
 /// stands in one block or in two neighbouring ones. A block ends at the highest node that shares an
-/// element with the block before; the end of the first is the one with the narrowest widest block. A
-/// numbering without order gives few blocks, at worst one.
+/// element with the block before; the end of the first is the one with the narrowest widest block.
+/// A numbering without order gives few blocks, at worst one.
 /// @return first node of each block; the node count at the end
 template <int Corners>
 std::vector<int> levels_in_place(const Mesh<Corners>& mesh) {
