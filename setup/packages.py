@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,8 +49,7 @@ def has_cmake():
 
 def compiles(compiler, text, *options):
     """Whether a compiler takes a C++ text."""
-    return process.output([compiler, "-x", "c++", *options, "-", "-o", os.devnull],
-                          input=text) is not None
+    return process.output([compiler, "-x", "c++", *options, "-"], input=text) is not None
 
 
 def has_compiler():
@@ -61,13 +61,16 @@ def has_compiler():
 
 def has_libfuzzer():
     """Linking tells: the compiler takes the flag without the library too."""
-    return compiles("clang++", 'extern "C" int LLVMFuzzerTestOneInput(const char*, long) '
-                    "{ return 0; }\n", "-fsanitize=fuzzer,address")
+    with tempfile.TemporaryDirectory() as folder:
+        return compiles("clang++", 'extern "C" int LLVMFuzzerTestOneInput(const char*, long) '
+                        "{ return 0; }\n", "-fsanitize=fuzzer,address", "-o", f"{folder}/probe")
 
 
 TOOLS = {"python": lambda: True, "cmake": has_cmake, "c++": has_compiler,
          "make": lambda: bool(os.environ.get("CMAKE_GENERATOR") or shutil.which("make")),
          "libFuzzer": has_libfuzzer}
+
+BASIC = {"cmake", "c++", "make"}  # without these nothing is known of the packages
 
 
 def unknown_to_cmake(packages):
@@ -99,8 +102,9 @@ def missing_for(command):
     """The needs of a command that are not met. Without CMake and compiler nothing is known of the
     packages; then they are not in the answer."""
     needs = [need for need in read_table() if need.wanted_by(command)]
-    missing = [need for need in needs if need.kind == "tool" and not TOOLS[need.name]()]
-    if not any(need.name in ("cmake", "c++", "make") for need in missing):
+    missing = [need for need in needs if need.kind == "tool" and not TOOLS[need.name]()
+               or need.kind == "program" and not shutil.which(need.name)]
+    if not BASIC & {need.name for need in missing}:
         unknown = unknown_to_cmake([need.name for need in needs if need.kind == "package"])
         missing += [need for need in needs if need.kind == "package" and need.name in unknown]
     modules = [need for need in needs if need.kind == "module"]
@@ -164,11 +168,17 @@ def require(command):
     for _ in range(2):
         if not missing or not right:
             break
-        install(missing, right)
+        try:
+            install(missing, right)
+        except Failure as failure:
+            if any(not need.optional_for(command) for need in missing):
+                raise
+            say(failure, "\nGoing on without.")
+            break
         missing = missing_for(command)
     needed = [need for need in missing if not need.optional_for(command)]
     if needed:
-        if any(need.kind == "tool" for need in needed):  # nothing is known of the rest: name all
+        if BASIC & {need.name for need in needed}:
             needed = [need for need in read_table()
                       if need in needed or need.wanted_by(command) and need.kind == "package"]
         what = "still not found after installing" if right else "and not to be installed from here"
