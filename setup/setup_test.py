@@ -1,6 +1,10 @@
 """Tests of what the commands of `run` share, and of `run` itself: python3 setup_test.py"""
 
+import contextlib
+import io
+import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -15,7 +19,7 @@ if sys.version_info < (3, 11):
     print("setup_test: skipped, needs Python 3.11")
     sys.exit(77)
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from setup import ROOT, Failure, packages, process  # noqa: E402
+from setup import ROOT, Failure, build, packages, process  # noqa: E402
 
 RUN = ROOT / "run"
 
@@ -74,6 +78,43 @@ class Packages(unittest.TestCase):
             with mock.patch.object(packages, "ROOT", Path(folder)), \
                     self.assertRaisesRegex(Failure, "cannot write to"):
                 packages.open_log("x")
+
+
+class Builds(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        (self.root / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.24)\nproject(small LANGUAGES CXX)\n"
+            "add_custom_target(fails COMMAND false)\n", encoding="utf-8")
+        (self.root / "CMakePresets.json").write_text(json.dumps({
+            "version": 5,
+            "configurePresets": [{"name": "p", "binaryDir": "${sourceDir}/build/p"}],
+            "buildPresets": [{"name": "p", "configurePreset": "p"}]}), encoding="utf-8")
+        for module in (build, packages):
+            patch = mock.patch.object(module, "ROOT", self.root)
+            patch.start()
+            self.addCleanup(patch.stop)
+
+    def test_another_compiler_is_taken_and_named(self):
+        mine = self.root / "my-c++"
+        mine.write_text('#!/bin/sh\nexec c++ "$@"\n', encoding="utf-8")
+        mine.chmod(0o755)
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            build.build("p")
+            with mock.patch.dict(os.environ, {"CXX": str(mine)}):
+                build.build("p")
+            build.build("p")
+        compilers = re.findall(r"with (\S+) \(log", said.getvalue())
+        self.assertEqual(compilers[1], str(mine))
+        self.assertEqual([compilers[0] == str(mine), compilers[2] == compilers[0]], [False, True])
+
+    def test_a_failure_shows_the_log(self):
+        with contextlib.redirect_stdout(io.StringIO()), \
+                self.assertRaisesRegex(Failure, "(?s)fails.*Error 1.*building fails failed; the whole"):
+            build.build("p", "fails")
 
 
 class Signals(unittest.TestCase):

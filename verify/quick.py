@@ -132,11 +132,14 @@ def check_repository(edited):
 
 
 def compile_alone(headers):
-    """Names of the headers that do not compile alone, two at a time as everything here."""
+    """Names of the headers that do not compile alone."""
     flags = command_of_support()
 
     def failed(header):
-        return process.call([*flags, "-fsyntax-only", "-x", "c++", header]) != 0
+        source = BUILD / "alone" / header.relative_to(INCLUDE).with_suffix(".cpp")
+        source.parent.mkdir(parents=True, exist_ok=True)
+        source.write_text(f'#include "{header.relative_to(INCLUDE).as_posix()}"\n', encoding="utf-8")
+        return process.call([*flags, "-fsyntax-only", source]) != 0
     with concurrent.futures.ThreadPoolExecutor(process.jobs()) as pool:
         return [header.relative_to(INCLUDE).as_posix()
                 for header, bad in zip(headers, pool.map(failed, headers)) if bad]

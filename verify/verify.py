@@ -29,13 +29,18 @@ NOT_SANITIZED = r"\(long\)$|^repository\.|^packaging\.|^report\.|^setup\."
 
 
 class Parts:
-    """The parts of a run, in order, each with what became of it: passed, failed or left out."""
+    """The parts of a run, in order, each with what became of it (passed, failed or left out) and what
+    it took."""
 
     def __init__(self):
         self.list = []
+        self.begin = time.monotonic()
 
     def add(self, name, status, note=""):
-        self.list.append({"name": name, "status": status, "note": note})
+        now = time.monotonic()
+        self.list.append({"name": name, "status": status, "note": note,
+                          "seconds": round(now - self.begin, 1)})
+        self.begin = now
         if status != "passed":
             say(f"{name}: {status}" + (f" ({note})" if note else ""))
 
@@ -157,9 +162,9 @@ def verify_all(full):
     # A run that does not come to its end leaves no report, neither an old one nor half a new one.
     for name in ("report.html", "report.json", "mutation.json"):
         (OUT / name).unlink(missing_ok=True)
-    build.build("verify")
-
     parts = Parts()
+    build.build("verify")
+    parts.add("building", "passed")
     selection = [] if full else ["--exclude-regex", LONG_NAME, "--label-exclude", LONG_LABEL]
     parts.passed("tests", run_tests("verify", *selection) == 0)
     fuzzing(parts, 60 if full else 10, without)
@@ -179,6 +184,8 @@ def verify_all(full):
          *(["--mutation", result] if result else [])])
     if status == 0 and parts.failed:
         raise Failure("the report says that all is well, and yet failed: " + ", ".join(parts.failed))
+    say("Took: " + ", ".join(f"{part['name']} {part['seconds']:.0f} s" for part in parts.list
+                             if part["seconds"] >= 1))
     if status == 0:
         say(f"All tests passed in {time.monotonic() - begin:.0f} s")
     return status
