@@ -25,6 +25,10 @@ function(write_healthy_tree)
   file(WRITE "${tree}/verify/README.md" "| ID | Statement |\n| --- | --- |\n| V-CELL-01 | text |\n")
   file(WRITE "${tree}/verify/cell/cell_verify.cpp" "TEST_CASE(\"V-CELL-01 text\") {}\n")
   file(WRITE "${tree}/docs/theory/cell.md" "# Cell\n\n**[C-1]** Energy (V-CELL-01).\n")
+  file(WRITE "${tree}/eigen/Eigen/Core" "")
+  foreach(file IN ITEMS .clang-format .clang-tidy)
+    file(COPY_FILE "${SCRIPTS}/../${file}" "${tree}/${file}")
+  endforeach()
   file(WRITE "${tree}/CITATION.cff" "title: x\nversion: 0.1.0\n")
   file(WRITE "${tree}/CHANGELOG.md" "# Changelog\n\n## [0.1.0] - today\n\n## [0.0.9] - before\n")
   write_tags()
@@ -39,7 +43,8 @@ endfunction()
 
 function(run_check script)
   execute_process(
-    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" -P "${SCRIPTS}/${script}.cmake"
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" "-DEIGEN=${tree}/eigen"
+      -P "${SCRIPTS}/${script}.cmake"
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   set(result "${result}" PARENT_SCOPE)
   set(output "${output}" PARENT_SCOPE)
@@ -62,12 +67,24 @@ function(mutation script expected file)
 endfunction()
 
 write_healthy_tree()
-foreach(script IN ITEMS layering check_claims check_version)
+set(skipped "")
+foreach(script IN ITEMS layering check_claims check_version check_format check_tidy)
   run_check("${script}")
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${script} rejected the healthy tree:\n${output}")
   endif()
+  if(output MATCHES "skipped")
+    list(APPEND skipped "${script}")
+  endif()
 endforeach()
+
+if(NOT check_format IN_LIST skipped)
+  mutation(check_format "would change" include/crossbeam/cell/cell.hpp "int  two_spaces;\n")
+endif()
+if(NOT check_tidy IN_LIST skipped)
+  mutation(check_tidy "invalid case style for class 'wrong_case'" include/crossbeam/cell/cell.hpp
+    "class wrong_case {};\n")
+endif()
 
 mutation(layering "against the direction of the layers" include/crossbeam/base/linalg.hpp
   "#include \"crossbeam/cell/cell.hpp\"\n")

@@ -27,7 +27,7 @@ class ThreadTeam {
       workers_.emplace_back([shared = shared_.get()] { shared->serve(); });
   }
   ThreadTeam(ThreadTeam&&) = default;
-  ThreadTeam& operator=(ThreadTeam&& other) {
+  ThreadTeam& operator=(ThreadTeam&& other) noexcept {
     stop();
     shared_ = std::move(other.shared_);
     workers_ = std::move(other.workers_);
