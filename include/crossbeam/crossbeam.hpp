@@ -39,12 +39,10 @@
 #include "crossbeam/mesh/mesh.hpp"
 #include "crossbeam/mesh/numbering.hpp"
 
-#include "crossbeam/model/first_order_system.hpp"
 #include "crossbeam/model/force_block.hpp"
 #include "crossbeam/model/ledger.hpp"
 #include "crossbeam/model/model.hpp"
 #include "crossbeam/model/nodal_state.hpp"
-#include "crossbeam/model/statics.hpp"
 #include "crossbeam/model/tangent_entries.hpp"
 #include "crossbeam/model/tool_contact.hpp"
 #include "crossbeam/model/tool_motion.hpp"
@@ -53,7 +51,6 @@
 #include "crossbeam/sweep/index_batches.hpp"
 #include "crossbeam/sweep/lane_array.hpp"
 #include "crossbeam/sweep/membrane_sweep.hpp"
-#include "crossbeam/sweep/membrane_tangent.hpp"
 #include "crossbeam/sweep/point_rows.hpp"
 #include "crossbeam/sweep/run_vectors.hpp"
 

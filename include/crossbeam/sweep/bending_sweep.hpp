@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <compare>
+
 #include <map>
 #include <set>
 #include <type_traits>

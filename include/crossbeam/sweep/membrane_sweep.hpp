@@ -4,17 +4,13 @@
 /// -> law -> generalised forces -> corners. Theory: docs/theory/sweep.md.
 
 #include "crossbeam/base/simd.hpp"
+#include "crossbeam/element/frequency.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/model/force_block.hpp"
 #include "crossbeam/sweep/index_batches.hpp"
 #include "crossbeam/sweep/lane_array.hpp"
-#include "crossbeam/sweep/membrane_tangent.hpp"
 #include "crossbeam/sweep/point_rows.hpp"
 #include "crossbeam/sweep/run_vectors.hpp"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +23,11 @@ struct MembraneOptions {
   double bulk_viscosity = 0;     ///< linear, on the fibre stretch rates [-]; >= 0, tag [D-5]
 };
 
+/// Without a tangent: MembraneSweepWithTangent (sweep/membrane_tangent.hpp) is the same with one.
 /// @tparam T pack; @tparam Element Triangle or Quadrilateral<1 or 4>
 template <class T, class Element, class Law>
   requires MembraneLaw<Law, T>
-class MembraneSweep final : public ForceBlock<real_t<T>> {
+class MembraneSweep : public ForceBlock<real_t<T>> {
  public:
   using R = real_t<T>;
   static constexpr int lanes = lanes_v<T>;
@@ -42,10 +39,6 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
   /// A cell without a potential has its yarn work summed along the path instead.
   static constexpr bool has_energy =
       requires(const Law& law, const FibreStrain<T>& b) { law.yarn_energy(law.evaluate(b)); };
-
-  static constexpr bool has_tangent = requires(const Law& law, const FibreStrain<T>& b) {
-    { law.hessian(law.evaluate(b)) } -> std::same_as<StrainHessian<T>>;
-  };
 
   /// Whether the law keeps the heights of its cells from step to step.
   static constexpr bool follows = requires {
@@ -80,7 +73,9 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
             detail::to_text(mesh.fibre_angle(e) * 180 / std::numbers::pi), "deg",
             "the law's " + detail::to_text(static_cast<double>(law_.reference().delta) * 180 /
                                            std::numbers::pi));
-      const double omega_squared = element_omega_squared(mesh, e, stiffness, areal_mass);
+      const double omega_squared = element_omega_squared<Element>(
+          mesh.corners(e), mesh.fibres[e], stiffness, static_cast<double>(hourglass_),
+          areal_mass * mesh.area(e) / corners);
       if (!std::isfinite(omega_squared))
         throw InputError("squared frequency of mesh.elements[" + std::to_string(e) + "]",
                          detail::to_text(omega_squared), "1/ms^2", "a finite number");
@@ -152,13 +147,6 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     }
   }
 
-  void add_tangent(const NodalState<R>& state, TangentEntries& tangent) const override {
-    if constexpr (has_tangent)
-      assemble(state, tangent);
-    else
-      ForceBlock<R>::add_tangent(state, tangent);
-  }
-
   [[nodiscard]] bool has_memory() const override { return follows; }
   [[nodiscard]] double omega_squared() const override { return omega_squared_; }
   [[nodiscard]] double damping_rate() const override { return damping_rate_; }
@@ -213,7 +201,7 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     }
   }
 
- private:
+ protected:
   using Batch = typename IndexBatches<corners, T>::Batch;
   static constexpr int hourglass_at = Element::points * point_size;  // p1, p2, stiffness
 
@@ -244,60 +232,6 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
     const T off2 = magnitude(heights.w2 - at.cell.forces.w2);
     s.cell_correction = std::max(
         {s.cell_correction, static_cast<double>(off1[lane]), static_cast<double>(off2[lane])});
-  }
-
-  static Vec3<double> lane_of(const Vec3<T>& v, int lane) {
-    return {static_cast<double>(v.x[lane]), static_cast<double>(v.y[lane]),
-            static_cast<double>(v.z[lane])};
-  }
-
-  void assemble(const NodalState<R>& state, TangentEntries& tangent) const {
-    MembraneTangent<Element> element;
-    for (int b = 0; b < batches_.size(); ++b) {
-      const Batch& batch = batches_[b];
-      Vec3<T> D[K], v[corners], rate[K];
-      relative_vectors(state.x, batch, D);
-      for (int a = 0; a < corners; ++a) v[a] = batches_.gather(state.v, batch, a);
-      Element::relative_vectors(v, rate);
-      MembranePointTangent<M> at_point[Element::points][lanes];
-      for (int p = 0; p < Element::points; ++p) {
-        const PointLanes<T, M> point = load_point(b, p);
-        const PointKinematics<T, M, K> kinematics(D, point), rates(rate, point);
-        const auto at = law_.evaluate(strain(kinematics, batch));
-        const FibreStress<T> m = law_.stress(at);
-        const StrainHessian<T> h = law_.hessian(at);
-        const T mu = viscosity_coefficient(b, p);
-        for (int l = 0; l < lanes; ++l) {
-          const auto real = [l](const T& x) { return static_cast<double>(x[l]); };
-          MembranePointTangent<M>& out = at_point[p][l];
-          for (int k = 0; k < M; ++k) {
-            out.t[0][k] = real(point.t1[k]);
-            out.t[1][k] = real(point.t2[k]);
-          }
-          out.weight = real(point.weight);
-          out.viscosity = real(mu);
-          out.f[0] = lane_of(kinematics.f1, l);
-          out.f[1] = lane_of(kinematics.f2, l);
-          out.rate[0] = lane_of(rates.f1, l);
-          out.rate[1] = lane_of(rates.f2, l);
-          out.stress = {real(m.m11), real(m.m22), real(m.m12)};
-          out.hessian = {real(h.h11), real(h.h22), real(h.h33),
-                         real(h.h12), real(h.h13), real(h.h23)};
-        }
-      }
-      for (int l = 0; l < lanes; ++l) {
-        if (!batch.holds(l)) continue;
-        element.clear();
-        for (int p = 0; p < Element::points; ++p) element.add(at_point[p][l]);
-        if constexpr (Element::has_hourglass)
-          element.add_hourglass(static_cast<double>(constants_.load(b, hourglass_at)[l]),
-                                static_cast<double>(constants_.load(b, hourglass_at + 1)[l]),
-                                static_cast<double>(hourglass_stiffness(b)[l]));
-        std::array<int, corners> node;
-        for (int a = 0; a < corners; ++a) node[a] = batches_.node(b, a, l);
-        element.assemble(node, viscosity_, tangent);
-      }
-    }
   }
 
   /// What one stage has summed up: since the start, and in the last step.
@@ -646,38 +580,6 @@ class MembraneSweep final : public ForceBlock<real_t<T>> {
       constants_.at(b, hourglass_at + 1, lane) = skewed ? R(h.p2) : R(0);
       constants_.at(b, hourglass_at + 2, lane) = R(h.stiffness);
     }
-  }
-
-  /// Largest squared frequency of one element on its share of the mass, tag [D-3].
-  double element_omega_squared(const Mesh<corners>& mesh, int e, double stiffness,
-                               double areal_mass) const {
-    using Vector = Eigen::Matrix<double, K, 1>;
-    using Square = Eigen::Matrix<double, K, K>;
-    const auto X = mesh.corners(e);
-    // The element's stiffness in one direction of space is C Q C^T, with C the integers of
-    // D_k = sum_a C_ak x_a; its eigenvalues are those of L^T Q L, where L L^T = C^T C.
-    Eigen::Matrix<double, corners, K> C;
-    for (int a = 0; a < corners; ++a) {
-      Vec3<double> x[corners]{}, D[K];
-      x[a].x = 1;
-      Element::relative_vectors(x, D);
-      for (int k = 0; k < K; ++k) C(a, k) = D[k].x;
-    }
-    Square Q = Square::Zero();
-    for (const auto& p : Element::coefficients(X, mesh.fibres[e])) {
-      const Eigen::Map<const Vector> t1(p.t1.data()), t2(p.t2.data());
-      Q += p.weight * stiffness * (t1 * t1.transpose() + t2 * t2.transpose());
-    }
-    if constexpr (Element::has_hourglass) {
-      const auto h = Element::hourglass(X);
-      const Vector g(-h.p1, -h.p2, 1.0);
-      Q += static_cast<double>(hourglass_) * h.stiffness * g * g.transpose();
-    }
-    const Square L = (C.transpose() * C).llt().matrixL();
-    const Square S = L.transpose() * Q * L;
-    Eigen::SelfAdjointEigenSolver<Square> solver;
-    solver.computeDirect(S, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues().maxCoeff() / (areal_mass * mesh.area(e) / corners);
   }
 
   Law law_;
