@@ -181,16 +181,16 @@ TEST_CASE(
     CHECK(error.field() == "tools[0].friction_model");
   }
   // A sweep that was compiled without a tangent says so.
-  Model<double> plain(NodalState<double>(sheet.mesh(), areal_mass), areal_mass);
+  Model<double> bare(NodalState<double>(sheet.mesh(), areal_mass), areal_mass);
   const auto law = fabric(pi / 2, 0.01);
-  plain.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
+  bare.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
       sheet.mesh(), law, areal_mass, MembraneOptions{}));
-  FirstOrderSystem without(plain);
-  std::vector<double> y(static_cast<std::size_t>(without.size()));
-  without.read(y.data());
-  FirstOrderSystem::Matrix J;
+  FirstOrderSystem without(bare);
+  Vector at_rest(without.size());
+  without.read(at_rest.data());
+  FirstOrderSystem::Matrix none;
   try {
-    without.jacobian(0, y.data(), J);
+    without.jacobian(0, at_rest.data(), none);
     FAIL_CHECK("a sweep without a tangent gave one");
   } catch (const InputError& error) {
     CHECK(error.field() == "force block");
