@@ -85,11 +85,11 @@ CROSSBEAM_INLINE constexpr bool any(bool condition) { return condition; }
 CROSSBEAM_INLINE constexpr bool all(bool condition) { return condition; }
 
 template <class T>
-CROSSBEAM_INLINE T maximum(const T& a, const T& b) {
+CROSSBEAM_INLINE constexpr T maximum(const T& a, const T& b) {
   return select(a < b, b, a);
 }
 template <class T>
-CROSSBEAM_INLINE T minimum(const T& a, const T& b) {
+CROSSBEAM_INLINE constexpr T minimum(const T& a, const T& b) {
   return select(b < a, b, a);
 }
 template <class T>

@@ -208,16 +208,16 @@ struct Pack {
 
   // Lane after lane, in their order. Written out, for g++ -O2 runs a loop through memory.
   CROSSBEAM_HOST_INLINE friend S lane_maximum(Pack a) {
-    return [a]<int... I>(std::integer_sequence<int, I...>) {
+    return [a]<int... k>(std::integer_sequence<int, k...>) {
       S r = a.v[0];
-      ((r = a.v[I] > r ? a.v[I] : r), ...);
+      ((r = a.v[k] > r ? a.v[k] : r), ...);
       return r;
     }(std::make_integer_sequence<int, N>());
   }
   CROSSBEAM_HOST_INLINE friend S lane_sum(Pack a) {
-    return [a]<int... I>(std::integer_sequence<int, I...>) {
+    return [a]<int... k>(std::integer_sequence<int, k...>) {
       S r = a.v[0];
-      ((r += a.v[I + 1]), ...);
+      ((r += a.v[k + 1]), ...);
       return r;
     }(std::make_integer_sequence<int, N - 1>());
   }
@@ -225,7 +225,7 @@ struct Pack {
  private:
   using Bits = typename Mask::Vector;
   CROSSBEAM_HOST_INLINE static Bits sign_bits() {
-    return Bits{} | std::numeric_limits<typename Mask::Integer>::min();
+    return Bits{} | (std::numeric_limits<typename Mask::Integer>::min)();
   }
 };
 

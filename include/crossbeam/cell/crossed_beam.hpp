@@ -230,7 +230,7 @@ class CrossedBeamCell {
       if constexpr (ContactKind == Contact::unilateral) {
         if (start(u1, u2, w1, w2)) {  // every lane slack and no bending: nothing to iterate
           finish(u1, u2, w1, w2, solution);
-          if (control.sweeps == 0) check(u1, u2, solution);
+          if (control.sweeps == 0) judge(u1, u2, solution);
           return solution;
         }
       } else {
@@ -246,7 +246,7 @@ class CrossedBeamCell {
         iterate(u1, u2, w1, w2, solution);
       }
       finish(u1, u2, w1, w2, solution);
-      if (control.sweeps == 0) check(u1, u2, solution);
+      if (control.sweeps == 0) judge(u1, u2, solution);
       return solution;
     }
   }
@@ -312,7 +312,7 @@ class CrossedBeamCell {
     // A straight yarn without bending has k_hh = 0 and k_Lh = 0 while the contact is open. (The
     // bilateral contact is never open, and det < 0 is the honest answer where it is unstable.)
     if constexpr (ContactKind == Contact::unilateral)
-      det = maximum(det, T(std::numeric_limits<R>::min()));
+      det = maximum(det, T((std::numeric_limits<R>::min)()));
     const T inv = T(1) / det;
     const T zero(0);
     return {y1.k_LL(yarn1_) - m1 * m1 * (h2 + B) * inv + select(u1 < zero, T(kres()), zero),
@@ -460,7 +460,7 @@ class CrossedBeamCell {
 
   /// Status of a solution that was iterated to convergence.
   template <class T>
-  CROSSBEAM_HOST_DEVICE void check(const T& u1, const T& u2, Solution<T>& solution) const {
+  CROSSBEAM_HOST_DEVICE void judge(const T& u1, const T& u2, Solution<T>& solution) const {
     const auto within = [this](const T& u, R L) {
       return all(u > T(-L)) && all(u < T(largest_elongation_));
     };

@@ -91,8 +91,8 @@ struct CellRange {
   /// form them, tag [C-12].
   [[nodiscard]] bool workable() const {
     const R eps = std::numeric_limits<R>::epsilon();
-    const R low = std::numeric_limits<R>::min() / (eps * eps * eps);
-    const R high = std::numeric_limits<R>::max() * eps;
+    const R low = (std::numeric_limits<R>::min)() / (eps * eps * eps);
+    const R high = (std::numeric_limits<R>::max)() * eps;
     const R k = least_stiffness, K = total_stiffness, l = least_length, L = largest_length;
     return minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low && k >= low * L * L &&
            maximum(R(1), L) * K * K * K <= high && K * L * L * L <= high;
@@ -107,7 +107,7 @@ struct CellRange {
   /// Elongations below it keep forces and energies finite, tag [C-12].
   [[nodiscard]] R largest_elongation() const {
     using std::sqrt;
-    const R high = std::numeric_limits<R>::max() * std::numeric_limits<R>::epsilon();
+    const R high = (std::numeric_limits<R>::max)() * std::numeric_limits<R>::epsilon();
     const R K = total_stiffness;
     return minimum(minimum(sqrt(high), sqrt(high / K)), high / (K * K * K));
   }

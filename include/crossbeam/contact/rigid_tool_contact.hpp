@@ -226,7 +226,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       at = shape_.gap(p);
     const auto touching = (at.gap < zero) && real;
     if (!any(touching)) {
-      const T clearance = select(real, at.clearance, T(std::numeric_limits<R>::max()));
+      const T clearance = select(real, at.clearance, T((std::numeric_limits<R>::max)()));
       // `travel` grows by what node and tool move together: it must use up the clearance first
       // [F-4].
       safe_until_[b] = travel + static_cast<double>(-lane_maximum(-clearance));
@@ -342,7 +342,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
                                            const S& c, const Vec3<S>& slip_rate,
                                            const S& pressure) const {
     using std::sqrt;
-    const S tiny(std::numeric_limits<R>::min());
+    const S tiny((std::numeric_limits<R>::min)());
     const S kt = S(static_cast<R>(parameters_.stick_ratio)) * k;
     Stick<S> out;
     out.xi = tangential<Flat>(xi, normal);
@@ -375,7 +375,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   }
 
   [[nodiscard]] double penalty() const {
-    return parameters_.penalty * std::max(1.0, parameters_.stick_ratio);
+    return parameters_.penalty * maximum(1.0, parameters_.stick_ratio);
   }
   /// A free tool moves against the nodes: each spring works on 1/m and its share of the tool's 1/M.
   [[nodiscard]] double sides(double areal_mass, double area) const {

@@ -262,7 +262,7 @@ class CentralDifference {
         throw RunError(when() + "tool " + std::to_string(k) +
                        " is at z = " + detail::to_text(model_.tools[k]->position()) +
                        " mm: its motion z(t) or force F(t) gives no number");
-      furthest = std::max(furthest, moved);
+      furthest = maximum(furthest, moved);
     }
     tool_travel_ += furthest;
   }
@@ -284,7 +284,7 @@ class CentralDifference {
       const double speed_squared = static_cast<double>(dot(v, v));
       if (!std::isfinite(speed_squared)) return n;
       if (speed_squared > most) fastest = n;
-      most = std::max(most, speed_squared);
+      most = maximum(most, speed_squared);
     }
     return fastest;
   }

@@ -40,11 +40,11 @@ inline double ring_radius(const std::vector<StencilNeighbour>& ring) {
   for (const auto& n : ring) {
     const double distance = std::hypot(n.along, n.across);
     if (!std::isfinite(distance)) return 0;
-    size = std::max(size, distance);
+    size = maximum(size, distance);
   }
   const double squared = size * size;
-  return squared >= Limits::min() / Limits::epsilon() &&
-                 squared <= Limits::max() * Limits::epsilon()
+  return squared >= (Limits::min)() / Limits::epsilon() &&
+                 squared <= (Limits::max)() * Limits::epsilon()
              ? size
              : 0;
 }

@@ -57,9 +57,9 @@ T checked_area(const std::string& name, const Base<T>& base) {
   using R = real_t<T>;
   const T det = metric_determinant(base);
   const T A11 = base.col(0).dot(base.col(0)), A22 = base.col(1).dot(base.col(1));
-  const R eps = epsilon_of<T>(), least = std::numeric_limits<R>::min() / (eps * eps);
+  const R eps = epsilon_of<T>(), least = (std::numeric_limits<R>::min)() / (eps * eps);
   if (!(det >= T(least) && A11 >= T(least) && A22 >= T(least) &&
-        A11 * A22 <= T(std::numeric_limits<R>::max()) &&
+        A11 * A22 <= T((std::numeric_limits<R>::max)()) &&
         det > T(R(1 << 20) * eps * eps) * A11 * A22))
     throw InputError(name, "area " + detail::to_text(passive(det)) + "^(1/2)", "mm^2",
                      "two finite base vectors that span an area > 0");

@@ -212,7 +212,7 @@ class PolynomialCurve {
     }
     for (int k = 0; k <= 120; ++k) {
       const R G = modulus(R(k) / R(100));
-      if (!(G >= R(0) && G <= std::numeric_limits<R>::max()))
+      if (!(G >= R(0) && G <= (std::numeric_limits<R>::max)()))
         throw InputError("shear.coefficients: G(" + detail::to_text(k / 100.0) + " rad)",
                          detail::to_text(G), "kN/mm",
                          "a finite number >= 0 for all angles from 0 to 1.2 rad");

@@ -4,6 +4,7 @@
 /// of them or in two neighbouring ones. Found by breadth-first search, or read off the numbering that
 /// a mesh has. Theory: docs/theory/sweep.md, "Numbering".
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/mesh/mesh.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ struct Levels {
   [[nodiscard]] int count() const { return static_cast<int>(start.size()) - 1; }
   [[nodiscard]] int widest() const {
     int most = 0;
-    for (int l = 0; l < count(); ++l) most = std::max(most, start[l + 1] - start[l]);
+    for (int l = 0; l < count(); ++l) most = maximum(most, start[l + 1] - start[l]);
     return most;
   }
   [[nodiscard]] std::vector<int> last() const {
@@ -183,19 +184,19 @@ std::vector<int> levels_in_place(const Mesh<Corners>& mesh) {
   for (int n = 0; n < count; ++n) reach[n] = n;
   for (const auto& element : mesh.elements) {
     const auto [low, high] = std::minmax_element(element.begin(), element.end());
-    reach[*low] = std::max(reach[*low], *high);
+    reach[*low] = maximum(reach[*low], *high);
   }
-  for (int n = 1; n < count; ++n) reach[n] = std::max(reach[n], reach[n - 1]);
+  for (int n = 1; n < count; ++n) reach[n] = maximum(reach[n], reach[n - 1]);
   std::vector<int> widest(count, 0);  // of the blocks that follow one that ends at n
   for (int n = count - 1; n >= 0; --n)
-    if (reach[n] > n) widest[n] = std::max(reach[n] - n, widest[reach[n]]);
+    if (reach[n] > n) widest[n] = maximum(reach[n] - n, widest[reach[n]]);
   std::vector<int> start{0};
   while (start.back() < count) {  // no element crosses to the nodes from here on: a new first block
     const int begin = start.back();
     int end = begin;
     // Stops where no element crosses, at the latest: one block is then as narrow as what follows.
     for (int n = begin, least = count + 1; n - begin + 1 < least; ++n) {
-      const int width = std::max(n - begin + 1, widest[n]);
+      const int width = maximum(n - begin + 1, widest[n]);
       if (width < least) {
         least = width;
         end = n;

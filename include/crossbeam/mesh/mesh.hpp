@@ -3,6 +3,7 @@
 /// A checked surface mesh of one element type in space, with explicit fibre directions per element.
 /// Nothing about the fibres is taken from the numbering of an element.
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/element/coefficients.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
 #include "crossbeam/element/triangle.hpp"
@@ -92,10 +93,10 @@ struct Mesh {
     const double twice_area = detail::norm(area_vector);
     double longest = 0;
     for (int a = 0; a < Corners; ++a)
-      longest = std::max(longest, detail::norm(X[(a + 1) % Corners] - X[a]));
+      longest = maximum(longest, detail::norm(X[(a + 1) % Corners] - X[a]));
     // An area below the second bound has not all its digits.
     constexpr double least =
-        std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+        (std::numeric_limits<double>::min)() / std::numeric_limits<double>::epsilon();
     if (!(twice_area > 1e-9 * longest * longest && twice_area > least))
       throw InputError(name + " area", detail::to_text(twice_area / 2), "mm^2",
                        "> 0 (the corners are collinear or coincide)");
@@ -127,7 +128,7 @@ struct Mesh {
     const Vec3<double> u{std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent),
                          std::scalbn(v.z, -exponent)};
     const double length = detail::norm(u);
-    const double out_of_plane = std::asin(std::min(std::abs(dot(u, n)) / length, 1.0));
+    const double out_of_plane = std::asin(minimum(std::abs(dot(u, n)) / length, 1.0));
     if (out_of_plane > 5 * std::numbers::pi / 180)
       throw InputError(name + " angle to the element's plane",
                        detail::to_text(out_of_plane * 180 / std::numbers::pi), "deg", "0 to 5");

@@ -3,6 +3,7 @@
 /// A model as y' = F(t, y), for time integrators other than crossbeam's own: the same blocks, tools
 /// and kernels as the explicit scheme. Theory: docs/theory/reference.md, [R-1].
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/model/model.hpp"
 
 #include <Eigen/SparseCore>
@@ -71,7 +72,7 @@ class FirstOrderSystem {
     double furthest = 0, tools = 0;
     for (int n = 0; n < s.node_count; ++n) {
       const Vec3<double> d = s.x.get(n) - Vec3<double>{y[3 * n], y[3 * n + 1], y[3 * n + 2]};
-      furthest = std::max(furthest, dot(d, d));
+      furthest = maximum(furthest, dot(d, d));
       s.x.x[n] = y[3 * n];
       s.x.y[n] = y[3 * n + 1];
       s.x.z[n] = y[3 * n + 2];
@@ -88,7 +89,7 @@ class FirstOrderSystem {
       } else {
         model_.tools[k]->place(motion.position(t), motion.velocity(t));
       }
-      tools = std::max(tools, std::abs(model_.tools[k]->position() - before));
+      tools = maximum(tools, std::abs(model_.tools[k]->position() - before));
     }
     // However an integrator goes to and fro: the culling [F-4] adds up all of it.
     travel_ += std::sqrt(furthest) + tools;

@@ -45,7 +45,7 @@ class ForceBlock {
   /// Largest difference of two node numbers that are worked on at the same time; `whole` for a block
   /// that knows no stages and is asked for all at once.
   [[nodiscard]] virtual int bandwidth() const { return whole; }
-  static constexpr int whole = std::numeric_limits<int>::max();
+  static constexpr int whole = (std::numeric_limits<int>::max)();
   /// Sorts the work: what touches level s and none above is stage s.
   /// @param level_start first node of every level and the end; levels are wider than the bandwidth
   virtual void arrange(const std::vector<int>& /*level_start*/) {}

@@ -3,6 +3,7 @@
 /// The model in space: nodes, force blocks and tools, before anything is said about time. The
 /// explicit scheme, the first-order system for other integrators and the statics all take one.
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/model/force_block.hpp"
 #include "crossbeam/model/tool_contact.hpp"
 
@@ -55,8 +56,8 @@ struct Model {
   /// @return first node of every level, multiples of the array padding, and the node count
   [[nodiscard]] std::vector<int> arrange(int least) {
     const int end = state.node_count;
-    int width = std::max(least, array_padding);
-    for (const auto& b : blocks) width = std::max(width, std::min(b->bandwidth(), end));
+    int width = maximum(least, array_padding);
+    for (const auto& b : blocks) width = maximum(width, minimum(b->bandwidth(), end));
     width = (width + array_padding - 1) / array_padding * array_padding;
     std::vector<int> level_start;
     for (int n = 0; n < end; n += width) level_start.push_back(n);
@@ -89,7 +90,7 @@ struct Model {
     }
     if (!(fabric + contact > 0)) throw RunError("no stiffness in the model: no critical step");
     const double all = stable_step(fabric + contact, viscosity);
-    return contact > 0 ? std::min(all, stable_step(contact, contact_damping)) : all;
+    return contact > 0 ? minimum(all, stable_step(contact, contact_damping)) : all;
   }
 
  private:

@@ -59,7 +59,7 @@ struct NodalState {
       mass[n] = R(A[n] * areal_mass);
       inverse_mass[n] = R(1 / (A[n] * areal_mass));
       // In float a mass may vanish that is one in double.
-      const R most = std::numeric_limits<R>::max();
+      const R most = (std::numeric_limits<R>::max)();
       if (!(mass[n] > R(0) && mass[n] <= most && inverse_mass[n] > R(0) && inverse_mass[n] <= most))
         throw InputError("mass of mesh.nodes[" + std::to_string(n) + "]",
                          detail::to_text(A[n] * areal_mass), "kg",

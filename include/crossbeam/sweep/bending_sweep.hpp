@@ -75,7 +75,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       if (!std::isfinite(omega_squared))
         throw InputError("squared bending frequency of mesh.nodes[" + std::to_string(n) + "]",
                          detail::to_text(omega_squared), "1/ms^2", "a finite number");
-      omega_squared_ = std::max(omega_squared_, omega_squared);
+      omega_squared_ = maximum(omega_squared_, omega_squared);
     }
   }
 
@@ -86,8 +86,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   }
   [[nodiscard]] int bandwidth() const override {
     int widest = 0;
-    for (const auto& group : short_) widest = std::max(widest, group.bandwidth());
-    for (const auto& group : long_) widest = std::max(widest, group.bandwidth());
+    for (const auto& group : short_) widest = maximum(widest, group.bandwidth());
+    for (const auto& group : long_) widest = maximum(widest, group.bandwidth());
     return widest;
   }
   void arrange(const std::vector<int>& level_start) override {
@@ -191,7 +191,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     const Vec3<double> sideways = cross(around.normal, along);
     const Vec3<double> across = (1 / detail::norm(sideways)) * sideways;
     double size = 0;
-    for (int m : around.nodes) size = std::max(size, detail::norm(mesh.nodes.get(m) - X));
+    for (int m : around.nodes) size = maximum(size, detail::norm(mesh.nodes.get(m) - X));
     const bool on_x = planes.x && std::abs(X.x) < 1e-9 * size;
     const bool on_y = planes.y && std::abs(X.y) < 1e-9 * size;
     std::vector<StencilNeighbour> out;
@@ -231,7 +231,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       std::vector<std::array<int, Columns>> tuples;
       for (const Stencil& s : stencils) {
         std::array<int, Columns> t;
-        for (int k = 0; k < Columns; ++k) t[k] = s.node[std::min(k, used_ - 1)];
+        for (int k = 0; k < Columns; ++k) t[k] = s.node[minimum(k, used_ - 1)];
         tuples.push_back(t);
       }
       batches_ = IndexBatches<Columns, T>(tuples);
@@ -248,7 +248,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
           [this](int) {
             R largest(0);
             for (int k = 0; k < used_; ++k)
-              largest = std::max(largest, std::abs(constants_.at(0, k, 0)));
+              largest = maximum(largest, std::abs(constants_.at(0, k, 0)));
             return largest;
           },
           [this](int b, int lane) { return batches_[b].holds(lane); });

@@ -57,7 +57,7 @@ class IndexBatches {
   };
   static constexpr int reach = 8;
   /// Places of a run, at most.
-  static constexpr int run_capacity = std::max(lanes, 256 / Columns / lanes * lanes);
+  static constexpr int run_capacity = maximum(lanes, 256 / Columns / lanes * lanes);
 
   IndexBatches() = default;
   explicit IndexBatches(const std::vector<std::array<int, Columns>>& tuples) {
@@ -76,12 +76,11 @@ class IndexBatches {
         found = fill(batch, tuples, begin);
       }
       if (!found) {
-        const int some = std::min(lanes, count - begin);
+        const int some = minimum(lanes, count - begin);
         batch.held = all_lanes >> (lanes - some);
         batch.gather_row = static_cast<int>(table_.size()) / (Columns * lanes);
         for (int c = 0; c < Columns; ++c)
-          for (int l = 0; l < lanes; ++l)
-            table_.push_back(tuples[begin + std::min(l, some - 1)][c]);
+          for (int l = 0; l < lanes; ++l) table_.push_back(tuples[begin + minimum(l, some - 1)][c]);
       }
       batch.first_tuple = begin;
       if (!batch.is_full()) {
@@ -99,13 +98,13 @@ class IndexBatches {
   [[nodiscard]] int bandwidth() const {
     int widest = 0;
     for (int b = 0; b < size(); ++b) {
-      int low = std::numeric_limits<int>::max(), high = 0;
+      int low = (std::numeric_limits<int>::max)(), high = 0;
       for (int c = 0; c < Columns; ++c)
         for (int lane = 0; lane < batches_[b].length(); ++lane) {
-          low = std::min(low, node(b, c, lane));
-          high = std::max(high, node(b, c, lane));
+          low = minimum(low, node(b, c, lane));
+          high = maximum(high, node(b, c, lane));
         }
-      widest = std::max(widest, high - low);
+      widest = maximum(widest, high - low);
     }
     return widest;
   }
@@ -124,7 +123,7 @@ class IndexBatches {
       int highest = 0;
       for (int c = 0; c < Columns; ++c)
         for (int lane = 0; lane < batches_[b].length(); ++lane)
-          highest = std::max(highest, level(node(b, c, lane)));
+          highest = maximum(highest, level(node(b, c, lane)));
       return highest;
     };
     std::vector<std::vector<int>> members(static_cast<std::size_t>(levels));
@@ -153,7 +152,7 @@ class IndexBatches {
   /// Tuple in a lane; idle lanes repeat one of their batch.
   [[nodiscard]] int tuple(int b, int lane) const {
     const std::uint32_t up_to_lane = ~std::uint32_t(0) >> (31 - lane);
-    return batches_[b].first_tuple + std::max(std::popcount(batches_[b].held & up_to_lane) - 1, 0);
+    return batches_[b].first_tuple + maximum(std::popcount(batches_[b].held & up_to_lane) - 1, 0);
   }
 
   /// Node of a column in a lane up to the last that holds a tuple.

@@ -79,14 +79,14 @@ class MembraneSweep : public ForceBlock<real_t<T>> {
       if (!std::isfinite(omega_squared))
         throw InputError("squared frequency of mesh.elements[" + std::to_string(e) + "]",
                          detail::to_text(omega_squared), "1/ms^2", "a finite number");
-      omega_squared_ = std::max(omega_squared_, omega_squared);
+      omega_squared_ = maximum(omega_squared_, omega_squared);
       // mu = b rho c h with h = sqrt(A); it acts where the stiffness acts, mu / stiffness as
       // strong.
       double area = 0;
       for (const auto& p : Element::coefficients(mesh.corners(e), mesh.fibres[e]))
-        area = std::max(area, Element::points * p.weight);
+        area = maximum(area, Element::points * p.weight);
       damping_rate_ =
-          std::max(damping_rate_, impedance * std::sqrt(area) / stiffness * omega_squared);
+          maximum(damping_rate_, impedance * std::sqrt(area) / stiffness * omega_squared);
     }
     viscosity_ = options.bulk_viscosity > 0;
     for (int b = 0; b < batches_.size(); ++b)
@@ -218,7 +218,7 @@ class MembraneSweep : public ForceBlock<real_t<T>> {
     s.slack = s.slack || !(q > 0);
     if constexpr (has_energy)
       s.cell_correction =
-          std::max(s.cell_correction, static_cast<double>(at.cell.last_correction[lane]));
+          maximum(s.cell_correction, static_cast<double>(at.cell.last_correction[lane]));
     else
       s.fallback = s.fallback || at.cell.fallback[lane] > R(0);
   }
@@ -230,7 +230,7 @@ class MembraneSweep : public ForceBlock<real_t<T>> {
     law_.cell().follow(at.u1, at.u2, heights);
     const T off1 = magnitude(heights.w1 - at.cell.forces.w1);
     const T off2 = magnitude(heights.w2 - at.cell.forces.w2);
-    s.cell_correction = std::max(
+    s.cell_correction = (std::max)(
         {s.cell_correction, static_cast<double>(off1[lane]), static_cast<double>(off2[lane])});
   }
 
@@ -548,7 +548,7 @@ class MembraneSweep : public ForceBlock<real_t<T>> {
           const int point = c / point_size * point_size;
           if (c < Element::points * point_size && c % point_size < 2 * M)
             for (int k = 0; k < 2 * M; ++k)
-              largest = std::max(largest, std::abs(constants_.at(0, point + k, 0)));
+              largest = maximum(largest, std::abs(constants_.at(0, point + k, 0)));
           else if (c < Element::points * point_size || c == hourglass_at + 2)
             largest = std::abs(constants_.at(0, c, 0));
           else

@@ -2,6 +2,7 @@
 /// @file
 /// The forces of one run of tuples on their way to the nodes. Theory: docs/theory/sweep.md.
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/sweep/index_batches.hpp"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ class RunVectors {
  private:
   static constexpr int reach = Batches::reach;
   // Loads reach up to `reach` numbers before the first and a pack beyond the last.
-  static constexpr int front = std::max(reach, lanes), back = std::max(reach, lanes) + lanes;
+  static constexpr int front = maximum(reach, lanes), back = maximum(reach, lanes) + lanes;
   static constexpr int size = front + Batches::run_capacity + back;
 
   template <int Count>

@@ -166,7 +166,7 @@ class HeightTable {
           }
         const R here = square(along_x * x_.per_spacing) + square(along_y * y_.per_spacing);
         if (!(here <= bound)) bound = here;  // heights that overflowed end as infinite or no slope
-        if (!(bound <= std::numeric_limits<R>::max())) return bound;
+        if (!(bound <= (std::numeric_limits<R>::max)())) return bound;
       }
     return sqrt(bound);
   }

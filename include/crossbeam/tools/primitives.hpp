@@ -122,10 +122,10 @@ class Cylinder {
   /// A direction square to the axis: the coordinate axis furthest from it, projected.
   static Vec3<R> across(const Vec3<R>& e) {
     const R x = magnitude(e.x), y = magnitude(e.y), z = magnitude(e.z);
-    const Vec3<R> far = z <= x && z <= y ? Vec3<R>{R(0), R(0), R(1)}
-                        : y <= x         ? Vec3<R>{R(0), R(1), R(0)}
-                                         : Vec3<R>{R(1), R(0), R(0)};
-    return detail::require_direction("cylinder.axis", far - dot(far, e) * e);
+    const Vec3<R> axis = z <= x && z <= y ? Vec3<R>{R(0), R(0), R(1)}
+                         : y <= x         ? Vec3<R>{R(0), R(1), R(0)}
+                                          : Vec3<R>{R(1), R(0), R(0)};
+    return detail::require_direction("cylinder.axis", axis - dot(axis, e) * e);
   }
 
   Vec3<R> point_;

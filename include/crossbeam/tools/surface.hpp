@@ -62,13 +62,13 @@ namespace detail {
 /// Squared lengths below it do not have all their digits.
 template <class R>
 constexpr R least_square() {
-  return std::numeric_limits<R>::min() / std::numeric_limits<R>::epsilon();
+  return (std::numeric_limits<R>::min)() / std::numeric_limits<R>::epsilon();
 }
 
 /// A length whose square is still a number.
 template <class R>
 R require_square(const std::string& field, R value, const std::string& unit) {
-  const R most = std::numeric_limits<R>::max() * std::numeric_limits<R>::epsilon();
+  const R most = (std::numeric_limits<R>::max)() * std::numeric_limits<R>::epsilon();
   if (!(value * value <= most))
     throw InputError(field, to_text(value), unit, "a number whose square is one too");
   return value;
