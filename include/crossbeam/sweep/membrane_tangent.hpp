@@ -130,63 +130,59 @@ template <class T, class Element, class Law>
   requires MembraneLawWithTangent<Law, T>
 class MembraneSweepWithTangent final : public MembraneSweep<T, Element, Law> {
   using Sweep = MembraneSweep<T, Element, Law>;
-  using Sweep::batches_, Sweep::constants_, Sweep::corners, Sweep::hourglass_at, Sweep::K,
-      Sweep::lanes, Sweep::law_, Sweep::M;
 
  public:
   using Sweep::Sweep;
   using typename Sweep::R;
 
   void add_tangent(const NodalState<R>& state, TangentEntries& tangent) const override {
+    constexpr int M = Sweep::M, K = Sweep::K, corners = Sweep::corners, lanes = Sweep::lanes;
+    const auto& points = this->membrane();
+    const bool viscous = points.constants.is_viscous();
     MembraneTangent<Element> element;
-    for (int b = 0; b < batches_.size(); ++b) {
-      const auto& batch = batches_[b];
-      Vec3<T> D[K], v[corners], rate[K];
-      this->relative_vectors(state.x, batch, D);
-      for (int a = 0; a < corners; ++a) v[a] = batches_.gather(state.v, batch, a);
+    MembranePointTangent<M> at_point[lanes][Element::points];
+    points.for_each_point(state.x, [&](const auto& at) {
+      Vec3<T> v[corners], rate[K];
+      for (int a = 0; a < corners; ++a) v[a] = points.batches.gather(state.v, at.batch, a);
       Element::relative_vectors(v, rate);
-      MembranePointTangent<M> at_point[Element::points][lanes];
-      for (int p = 0; p < Element::points; ++p) {
-        const PointLanes<T, M> point = this->load_point(b, p);
-        const PointKinematics<T, M, K> kinematics(D, point), rates(rate, point);
-        const auto at = law_.evaluate(this->strain(kinematics, batch));
-        const FibreStress<T> m = law_.stress(at);
-        const StrainHessian<T> h = law_.hessian(at);
-        const T mu = this->viscosity_coefficient(b, p);
-        for (int l = 0; l < lanes; ++l) {
-          const auto real = [l](const T& x) { return static_cast<double>(x[l]); };
-          const auto vector = [&](const Vec3<T>& f) {
-            return Vec3<double>{real(f.x), real(f.y), real(f.z)};
-          };
-          MembranePointTangent<M>& out = at_point[p][l];
-          for (int k = 0; k < M; ++k) {
-            out.t[0][k] = real(point.t1[k]);
-            out.t[1][k] = real(point.t2[k]);
-          }
-          out.weight = real(point.weight);
-          out.viscosity = real(mu);
-          out.f[0] = vector(kinematics.f1);
-          out.f[1] = vector(kinematics.f2);
-          out.rate[0] = vector(rates.f1);
-          out.rate[1] = vector(rates.f2);
-          out.stress = {real(m.m11), real(m.m22), real(m.m12)};
-          out.hessian = {real(h.h11), real(h.h22), real(h.h33),
-                         real(h.h12), real(h.h13), real(h.h23)};
-        }
-      }
+      const PointLanes<T, M> point = at.constants.point();
+      const PointKinematics<T, M, K> rates(rate, point);
+      const FibreStress<T> m = points.law.stress(at.state);
+      const StrainHessian<T> h = points.law.hessian(at.state);
+      const T mu = at.constants.viscosity();
       for (int l = 0; l < lanes; ++l) {
-        if (!batch.holds(l)) continue;
+        if (!at.batch.holds(l)) continue;
+        const auto real = [l](const T& value) { return static_cast<double>(value[l]); };
+        const auto vector = [&](const Vec3<T>& f) {
+          return Vec3<double>{real(f.x), real(f.y), real(f.z)};
+        };
+        MembranePointTangent<M>& out = at_point[l][at.p];
+        for (int k = 0; k < M; ++k) {
+          out.t[0][k] = real(point.t1[k]);
+          out.t[1][k] = real(point.t2[k]);
+        }
+        out.weight = real(point.weight);
+        out.viscosity = real(mu);
+        out.f[0] = vector(at.kinematics.f1);
+        out.f[1] = vector(at.kinematics.f2);
+        out.rate[0] = vector(rates.f1);
+        out.rate[1] = vector(rates.f2);
+        out.stress = {real(m.m11), real(m.m22), real(m.m12)};
+        out.hessian = {real(h.h11), real(h.h22), real(h.h33),
+                       real(h.h12), real(h.h13), real(h.h23)};
+        if (at.p + 1 < Element::points) continue;
         element.clear();
-        for (int p = 0; p < Element::points; ++p) element.add(at_point[p][l]);
-        if constexpr (Element::has_hourglass)
-          element.add_hourglass(static_cast<double>(constants_.load(b, hourglass_at)[l]),
-                                static_cast<double>(constants_.load(b, hourglass_at + 1)[l]),
-                                static_cast<double>(this->hourglass_stiffness(b)[l]));
+        for (const auto& p : at_point[l]) element.add(p);
+        if constexpr (Element::has_hourglass) {
+          const auto& c = at.constants;
+          const T stiffness = T(points.constants.hourglass_modulus()) * c.hourglass(2);
+          element.add_hourglass(real(c.hourglass(0)), real(c.hourglass(1)), real(stiffness));
+        }
         std::array<int, corners> node;
-        for (int a = 0; a < corners; ++a) node[a] = batches_.node(b, a, l);
-        element.assemble(node, this->viscosity_, tangent);
+        for (int a = 0; a < corners; ++a) node[a] = points.batches.node(at.b, a, l);
+        element.assemble(node, viscous, tangent);
       }
-    }
+    });
   }
 };
 

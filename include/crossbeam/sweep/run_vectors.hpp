@@ -83,12 +83,13 @@ class RunVectors {
       const Line to{{out[0] + first[run.column[k]], out[1] + first[run.column[k]],
                      out[2] + first[run.column[k]]},
                     run.length + run.shift[run.line_end[line] - 1]};
-      switch (run.line_end[line] - k) {
-        case 1: line_of<Weighted, 1>(to, run, k, 1, weight); break;
-        case 2: line_of<Weighted, 2>(to, run, k, 2, weight); break;
-        case 3: line_of<Weighted, 3>(to, run, k, 3, weight); break;
-        default: line_of<Weighted, 0>(to, run, k, run.line_end[line] - k, weight);
-      }
+      const int columns = run.line_end[line] - k;
+      if (columns == 1)
+        line_of<Weighted, 1>(to, run, k, 1, weight);
+      else if (columns == 2)
+        line_of<Weighted, 2>(to, run, k, 2, weight);
+      else
+        line_of<Weighted, Columns == 3 ? 3 : 0>(to, run, k, columns, weight);
     }
   }
 
