@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// The highest frequency of one membrane element on its share of the mass, in plain numbers. Theory:
-/// docs/theory/dynamics.md, [D-3].
+/// The highest frequency of one membrane element on its share of the mass, in plain numbers.
+/// Theory: docs/theory/dynamics.md, [D-3].
 
 #include "crossbeam/element/coefficients.hpp"
 
@@ -12,7 +12,8 @@ namespace crossbeam {
 
 namespace detail {
 
-/// Largest eigenvalue of a symmetric matrix by Jacobi's rotations; NaN or infinite where an entry is.
+/// Largest eigenvalue of a symmetric matrix by Jacobi's rotations; NaN or infinite where an entry
+/// is.
 /// @param a the first `size` rows and columns; destroyed
 inline double largest_eigenvalue(double (&a)[3][3], int size) {
   double norm = 0;

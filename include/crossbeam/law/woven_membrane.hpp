@@ -83,9 +83,9 @@ class WovenMembrane {
     return s;
   }
 
-  /// @name Stress by one residual evaluation of the cell, tag [C-14], for the small steps of explicit
-  /// dynamics: a row of points in loops short enough for the processor to look ahead, tag [S-4], and
-  /// what each of them does at one point.
+  /// @name Stress by one residual evaluation of the cell, tag [C-14], for the small steps of
+  /// explicit dynamics: a row of points in loops short enough for the processor to look ahead, tag
+  /// [S-4], and what each of them does at one point.
   /// @{
   /// Stresses of a row of points, and the reciprocals of the yarns' stretches on the way.
   /// @param row the strains; a PointRows (sweep/point_rows.hpp), whose numbers stay in the cache

@@ -23,7 +23,7 @@ struct MembraneOptions {
 };
 
 /// Constants of the batches of a run at one Gauss point, one batch after the other.
-/// @tparam T pack; @tparam M relative vectors in a point; @tparam Hourglass where its constants begin
+/// @tparam T pack; @tparam M relative vectors in a point; @tparam Hourglass first of its constants
 template <class T, int M, int Hourglass>
 struct PointConstants {
   const real_t<T>* at;

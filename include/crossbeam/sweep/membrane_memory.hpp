@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// What a membrane sweep remembers from step to step: heights of followed cells, tag [C-14], and the
-/// work of yarns without a potential.
+/// What a membrane sweep remembers from step to step: heights of followed cells, tag [C-14], and
+/// the work of yarns without a potential.
 
 #include "crossbeam/sweep/lane_array.hpp"
 #include "crossbeam/sweep/membrane_points.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 /// @file
-/// Elements of a mesh with their law: what the membrane sweep runs over, and one loop over the Gauss
-/// points for all that is asked beside the forces (energy, samples, heights, tangent). Theory:
-/// docs/theory/sweep.md.
+/// Elements of a mesh with their law: what the membrane sweep runs over, and one loop over the
+/// Gauss points for all that is asked beside the forces (energy, samples, heights, tangent).
+/// Theory: docs/theory/sweep.md.
 
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/element/membrane.hpp"

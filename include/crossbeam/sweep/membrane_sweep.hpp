@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// The membrane forces of a mesh, a run of elements at a time: strains, stresses, viscosity, forces,
-/// scatter. Its words stand in index_batches.hpp. Theory: docs/theory/sweep.md.
+/// The membrane forces of a mesh, a run of elements at a time: strains, stresses, viscosity,
+/// forces, scatter. Its words stand in index_batches.hpp. Theory: docs/theory/sweep.md.
 
 #include "crossbeam/model/force_block.hpp"
 #include "crossbeam/sweep/membrane_memory.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// The membrane sweep with a consistent tangent, for implicit methods and statics: only who asks for
-/// it compiles it. Theory: docs/theory/reference.md, [R-2].
+/// The membrane sweep with a consistent tangent, for implicit methods and statics: only who asks
+/// for it compiles it. Theory: docs/theory/reference.md, [R-2].
 
 #include "crossbeam/model/tangent_entries.hpp"
 #include "crossbeam/sweep/membrane_sweep.hpp"

@@ -28,20 +28,20 @@ class RunVectors {
       for (auto& component : vector) clear<front>(component);
   }
 
-  /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
+  /// @param slot of lane 0; idle lanes must hold zeros
   template <class U>
-  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t tuple, const Vec3<U>& v) {
-    v.x.store(number_[vector][0] + front + tuple);
-    v.y.store(number_[vector][1] + front + tuple);
-    v.z.store(number_[vector][2] + front + tuple);
+  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t slot, const Vec3<U>& v) {
+    v.x.store(number_[vector][0] + front + slot);
+    v.y.store(number_[vector][1] + front + slot);
+    v.z.store(number_[vector][2] + front + slot);
   }
-  /// Zeros in the lanes without a tuple.
-  /// @param vectors the first ones; @param tuple place of lane 0 in the run
+  /// Zeros in the other lanes.
+  /// @param vectors the first ones; @param slot of lane 0
   template <class Mask>
-  void rest(int vectors, std::ptrdiff_t tuple, const Mask& active) {
+  void keep(int vectors, std::ptrdiff_t slot, const Mask& active) {
     for (int k = 0; k < vectors; ++k)
       for (auto& component : number_[k]) {
-        R* const at = component + front + tuple;
+        R* const at = component + front + slot;
         select(active, T::load(at), T(R(0))).store(at);
       }
   }
@@ -133,8 +133,8 @@ class RunVectors {
     // The nodes behind may be another thread's: they are not even written with what they had.
     if (i < to.nodes)
       unrolled<3>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        const T rest = sum(c, i);
-        for (int lane = 0; lane < to.nodes - i; ++lane) out[c][i + lane] -= rest[lane];
+        const T last = sum(c, i);
+        for (int lane = 0; lane < to.nodes - i; ++lane) out[c][i + lane] -= last[lane];
       });
   }
 
