@@ -5,6 +5,7 @@
 /// friction; and nothing in it has a step or a memory, so that any integrator can run it.
 
 #include "crossbeam/crossbeam.hpp"
+#include "crossbeam/sweep/membrane_tangent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,11 +73,11 @@ struct SphereSheet {
     Model<R> out(std::move(state), mass_damping);
     const MembraneOptions options{1e-4, 0.06};
     if (gauss_points == 1)
-      out.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, Law>>(sheet, law<R>(), areal_mass,
-                                                                        options));
+      out.add(std::make_unique<MembraneSweepWithTangent<T, Quadrilateral<1>, Law>>(
+          sheet, law<R>(), areal_mass, options));
     else
-      out.add(std::make_unique<MembraneSweep<T, Quadrilateral<4>, Law>>(sheet, law<R>(), areal_mass,
-                                                                        options));
+      out.add(std::make_unique<MembraneSweepWithTangent<T, Quadrilateral<4>, Law>>(
+          sheet, law<R>(), areal_mass, options));
     if (bending > 0)
       out.add(
           std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{bending, bending}, areal_mass));

@@ -1,6 +1,7 @@
 #include "quarter_model.hpp"
 
 #include "crossbeam/crossbeam.hpp"
+#include "crossbeam/sweep/membrane_tangent.hpp"
 #include "double_dome.hpp"
 
 #include <algorithm>
@@ -102,8 +103,15 @@ void QuarterModel<R>::add_membrane_of(const Law& law) {
 template <class R>
 template <class Element, class Law>
 void QuarterModel<R>::add_block(const Law& law, const MembraneOptions& options) {
-  model_.add(std::make_unique<MembraneSweep<NativePack<R>, Element, Law>>(
-      mesh_, law, case_.fabric.areal_mass, options));
+  using T = NativePack<R>;
+  const double mass = case_.fabric.areal_mass;
+  // Of the statics of a formed part (drape_demo/reference), in double and without memory.
+  if constexpr (std::is_same_v<R, double> && !Law::follows_heights &&
+                MembraneLawWithTangent<Law, T>)
+    model_.add(
+        std::make_unique<MembraneSweepWithTangent<T, Element, Law>>(mesh_, law, mass, options));
+  else
+    model_.add(std::make_unique<MembraneSweep<T, Element, Law>>(mesh_, law, mass, options));
 }
 
 /// Punch below, die above, holder ring below. The fabric's mid-surface starts on the die flange, at

@@ -179,4 +179,15 @@ TEST_CASE("V-ELEM-06 batches: every width, path and filling of the lanes gives t
   in_float.claim("V-ELEM-06", 1e-5, "float against double, relative");
 }
 
+TEST_CASE("V-ELEM-06 batches: idle lanes before the last tuple of a batch count in its bandwidth") {
+  // The second batch goes on where the first ends, at node 4: its lanes 0 and 1 hold no tuple, but
+  // what they read gets zeros, so that no other thread may be at work there.
+  const IndexBatches<2, Pack<double, 4>> batches({{0, 10}, {1, 11}, {6, 16}, {7, 17}});
+  REQUIRE(batches.size() == 2);
+  REQUIRE(!batches[1].holds(0));
+  REQUIRE(batches.node(1, 0, 0) == 4);
+  verify::claim("V-ELEM-06", (17 - 4) - batches.bandwidth(), 0,
+                "nodes that a batch writes to beyond its bandwidth");
+}
+
 TEST_SUITE_END();

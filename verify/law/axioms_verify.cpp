@@ -6,6 +6,7 @@
 #include "law/laws.hpp"
 #include "support/claim.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <doctest/doctest.h>
 

@@ -7,6 +7,8 @@
 #include "support/claim.hpp"
 #include "support/reference_states.hpp"
 
+#include <Eigen/Geometry>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -27,7 +27,7 @@ struct HeldSheet {
   HeldSheet(double xx, double yy, double xy, bool planar, verify::Random& random)
       : model(NodalState<double>(sheet, areal_mass, fixed_rim(n, n)), areal_mass) {
     const auto law = fabric(pi / 2, 0.01);
-    model.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
+    model.add(std::make_unique<MembraneSweepWithTangent<T, Quadrilateral<1>, decltype(law)>>(
         sheet, law, areal_mass, MembraneOptions{1e-4, 0.06}));
     model.add(
         std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));

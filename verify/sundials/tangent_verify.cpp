@@ -31,7 +31,7 @@ struct PressedSheet {
                             pi / 2)),
         model(NodalState<double>(sheet, areal_mass), 0.3) {
     const auto law = fabric(pi / 2, 0.01);
-    model.add(std::make_unique<MembraneSweep<T, typename Kind::Element, decltype(law)>>(
+    model.add(std::make_unique<MembraneSweepWithTangent<T, typename Kind::Element, decltype(law)>>(
         sheet, law, areal_mass, MembraneOptions{1e-2, 0.06}));
     model.add(std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{2e-3, 1e-3}, areal_mass,
                                                 SymmetryPlanes{planes, planes}));
@@ -178,6 +178,21 @@ TEST_CASE(
     FAIL_CHECK("an elastic stick was accepted");
   } catch (const InputError& error) {
     CHECK(error.field() == "tools[0].friction_model");
+  }
+  // A sweep that was compiled without a tangent says so.
+  Model<double> bare(NodalState<double>(sheet.mesh(), areal_mass), areal_mass);
+  const auto law = fabric(pi / 2, 0.01);
+  bare.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
+      sheet.mesh(), law, areal_mass, MembraneOptions{}));
+  FirstOrderSystem without(bare);
+  Vector at_rest(without.size());
+  without.read(at_rest.data());
+  FirstOrderSystem::Matrix none;
+  try {
+    without.jacobian(0, at_rest.data(), none);
+    FAIL_CHECK("a sweep without a tangent gave one");
+  } catch (const InputError& error) {
+    CHECK(error.field() == "force block");
   }
   Model<double> still(NodalState<double>(sheet.mesh(), areal_mass), areal_mass);
   ContactParameters smooth;

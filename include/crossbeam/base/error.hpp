@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -44,12 +43,15 @@ class RunError : public std::runtime_error {
 
 namespace detail {
 
+/// The digits that make a double; of wider numbers as many.
+[[nodiscard]] inline std::string to_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
 template <class T>
 [[nodiscard]] std::string to_text(const T& value) {
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  return text.str();
+  return to_text(static_cast<double>(value));
 }
 
 }  // namespace detail

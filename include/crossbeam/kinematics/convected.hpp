@@ -7,8 +7,6 @@
 #include "crossbeam/base/linalg.hpp"
 #include "crossbeam/base/scalar.hpp"
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -28,8 +26,9 @@ Matrix2<T> metric(const Base<T>& base) {
 /// Determinant of the metric (Eq. 7), as |A1 x A2|^2: this form does not cancel for skew bases.
 template <class T>
 T metric_determinant(const Base<T>& base) {
-  const Vector3<T> n = base.col(0).cross(base.col(1));
-  return n.dot(n);
+  const auto column = [&](int k) { return Vec3<T>{base(0, k), base(1, k), base(2, k)}; };
+  const Vec3<T> n = cross(column(0), column(1));
+  return dot(n, n);
 }
 
 /// Covariant Green-Lagrange strain (Eq. 3) from the current and the reference base [length^2].

@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <limits>
 
 namespace crossbeam {
@@ -100,10 +101,49 @@ class WovenMembrane {
     return s;
   }
 
-  /// @name Stress by one residual evaluation of the cell, tag [C-14], for the small steps of explicit
-  /// dynamics: in three parts, so that each makes a loop short enough for the processor to look
-  /// ahead, tag [S-4].
+  /// @name Stress by one residual evaluation of the cell, tag [C-14], for the small steps of
+  /// explicit dynamics: a row of points in loops short enough for the processor to look ahead, tag
+  /// [S-4], and what each of them does at one point.
   /// @{
+  /// Stresses of a row of points, and the reciprocals of the yarns' stretches on the way.
+  /// @param row the strains; a PointRows (sweep/point_rows.hpp), whose numbers stay in the cache
+  /// @param end points, a multiple of the lanes
+  /// @param heights of the cells of the first pack, warp and then weft; moved on to the equilibrium
+  /// @param stride from one pack's heights to the next's
+  template <class Row>
+  CROSSBEAM_INLINE void stresses(Row& row, int end, R* heights, std::size_t stride) const {
+    using T = typename Row::Number;
+    constexpr int lanes = lanes_v<T>;
+    for (int i = 0; i < end; i += lanes) {
+      T u1, u2, inv1, inv2;
+      elongate(row.b11.load(i), row.b22.load(i), u1, u2, inv1, inv2);
+      row.u1.store(i, u1);
+      row.u2.store(i, u2);
+      row.inv1.store(i, inv1);
+      row.inv2.store(i, inv2);
+    }
+    for (int y = 0; y < 2; ++y) {
+      const auto& yarn = y == 0 ? cell_.warp() : cell_.weft();
+      const auto& u = y == 0 ? row.u1 : row.u2;
+      const R* height = heights + y * lanes;
+      for (int i = 0; i < end; i += lanes, height += stride)
+        row.yarn[y].store(i, cell_.evaluate_yarn(yarn, u.load(i), T::load(height)));
+    }
+    R* height = heights;
+    for (int i = 0; i < end; i += lanes, height += stride) {
+      CrimpHeights<T> w{T::load(height), T::load(height + lanes)};
+      T m11, m22;
+      follow(row.u1.load(i), row.u2.load(i), row.inv1.load(i), row.inv2.load(i),
+             row.yarn[0].load(i), row.yarn[1].load(i), w, m11, m22);
+      w.w1.store(height);
+      w.w2.store(height + lanes);
+      row.m11.store(i, m11);
+      row.m22.store(i, m22);
+    }
+    for (int i = 0; i < end; i += lanes)
+      row.store_stress(i, with_shear(row.strain(i), row.inv1.load(i), row.inv2.load(i),
+                                     row.m11.load(i), row.m22.load(i)));
+  }
   /// Elongations of the yarns and reciprocals of their stretches.
   template <class T>
   CROSSBEAM_INLINE void elongate(const T& b11, const T& b22, T& u1, T& u2, T& inv1, T& inv2) const {

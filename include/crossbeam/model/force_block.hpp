@@ -71,7 +71,7 @@ class ForceBlock {
   /// @throws InputError where the forces have no consistent tangent
   virtual void add_tangent(const NodalState<R>&, TangentEntries&) const {
     throw InputError("force block", "without a consistent tangent", "",
-                     "one that implements add_tangent");
+                     "one with add_tangent, for instance MembraneSweepWithTangent");
   }
   /// State of every element of the block; empty for blocks without elements.
   virtual void sample(const NodalState<R>&, std::vector<ElementSample>&) const {}

@@ -14,10 +14,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <set>
 #include <tuple>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace crossbeam {
 
@@ -35,19 +35,19 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
                const SymmetryPlanes& planes = {})
       : node_count_(mesh.node_count), areal_mass_(areal_mass) {
     require_positive("areal_mass", areal_mass, "kg/mm^2");
-    const double D[2] = {require_non_negative("bending.warp", stiffness.warp, "kN mm"),
-                         require_non_negative("bending.weft", stiffness.weft, "kN mm")};
+    const double of_family[2] = {require_non_negative("bending.warp", stiffness.warp, "kN mm"),
+                                 require_non_negative("bending.weft", stiffness.weft, "kN mm")};
     const std::vector<double> area = mesh.tributary_areas();
     std::vector<double> row_sum(mesh.node_count, 0.0);
-    std::map<Key, std::vector<Stencil>> sorted;
+    std::vector<std::pair<Key, std::vector<Stencil>>> sorted;
     const std::vector<Surroundings> around = surroundings(mesh, planes);
     for (int n = 0; n < mesh.node_count; ++n)
       for (int family = 0; family < 2; ++family) {
-        if (!(D[family] > 0)) continue;
+        if (!(of_family[family] > 0)) continue;
         const auto weights = difference(mesh, around, n, family, planes);
         if (weights.empty()) continue;
         Stencil stencil;
-        stencil.stiffness = D[family] * area[n];
+        stencil.stiffness = of_family[family] * area[n];
         Key key{weights.size() > 3, family, {}};
         for (const auto& w : weights) {
           stencil.node.push_back(w.id / 4);
@@ -58,9 +58,14 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         for (double w : stencil.weight) sum += std::abs(w);
         for (std::size_t k = 0; k < stencil.node.size(); ++k)
           row_sum[stencil.node[k]] += stencil.stiffness * std::abs(stencil.weight[k]) * sum;
-        sorted[key].push_back(std::move(stencil));
+        auto group = std::find_if(sorted.begin(), sorted.end(),
+                                  [&](const auto& g) { return g.first == key; });
+        if (group == sorted.end()) group = sorted.insert(group, {key, {}});
+        group->second.push_back(std::move(stencil));
         ++count_;
       }
+    std::sort(sorted.begin(), sorted.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [key, stencils] : sorted) {
       if (key.mirrors.size() <= 3)
         short_.emplace_back(key.mirrors, stencils);
@@ -124,7 +129,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     bool is_long;
     int family;
     std::vector<int> mirrors;
-    bool operator<(const Key& other) const {  // libc++ 16 compares no vectors by <=>
+    bool operator==(const Key&) const = default;
+    bool operator<(const Key& other) const {
       return std::tie(is_long, family, mirrors) <
              std::tie(other.is_long, other.family, other.mirrors);
     }
@@ -132,16 +138,21 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   static int label(int node, int mirror) { return node * 4 + mirror; }
 
   struct Surroundings {
-    std::set<int> nodes;
+    std::vector<int> nodes;  ///< in their order, each once
     Vec3<double> warp{}, weft{}, normal{};
     bool rim = false;  ///< on a free edge
   };
+
+  static void keep_once(std::vector<int>& nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  }
 
   template <int Corners>
   static std::vector<Surroundings> surroundings(const Mesh<Corners>& mesh,
                                                 const SymmetryPlanes& planes) {
     std::vector<Surroundings> out(mesh.node_count);
-    std::map<std::pair<int, int>, int> edges;  // how many elements have it
+    std::vector<std::pair<int, int>> edges;  // of all elements
     for (int e = 0; e < mesh.element_count(); ++e) {
       const auto& corners = mesh.elements[e];
       const Vec3<double> normal = cross(mesh.fibres[e].warp, mesh.fibres[e].weft);
@@ -151,18 +162,22 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         out[n].weft = out[n].weft + mesh.fibres[e].weft;
         out[n].normal = out[n].normal + normal;
         for (int m : corners)
-          if (m != n) out[n].nodes.insert(m);
-        ++edges[std::minmax(n, next)];
+          if (m != n) out[n].nodes.push_back(m);
+        edges.push_back(std::minmax(n, next));
       }
     }
-    for (const auto& [edge, elements] : edges) {
+    for (Surroundings& around : out) keep_once(around.nodes);
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t k = 0, next = 0; k < edges.size(); k = next) {
+      const auto edge = edges[k];
+      while (next < edges.size() && edges[next] == edge) ++next;
       const Vec3<double> A = mesh.nodes.get(edge.first), B = mesh.nodes.get(edge.second);
       const double tolerance = 1e-9 * detail::norm(B - A);
       const auto zero = [&](double a, double b) {
         return std::abs(a) <= tolerance && std::abs(b) <= tolerance;
       };
       const bool mirrored = (planes.x && zero(A.x, B.x)) || (planes.y && zero(A.y, B.y));
-      if (elements == 1 && !mirrored) out[edge.first].rim = out[edge.second].rim = true;
+      if (next - k == 1 && !mirrored) out[edge.first].rim = out[edge.second].rim = true;
     }
     return out;
   }
@@ -180,8 +195,9 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     if (!weights.empty()) return weights;
     Surroundings wider = around[n];
     for (int m : around[n].nodes)
-      wider.nodes.insert(around[m].nodes.begin(), around[m].nodes.end());
-    wider.nodes.erase(n);
+      wider.nodes.insert(wider.nodes.end(), around[m].nodes.begin(), around[m].nodes.end());
+    keep_once(wider.nodes);
+    wider.nodes.erase(std::find(wider.nodes.begin(), wider.nodes.end(), n));
     return quadratic_difference(label(n, 0), ring(mesh, wider, n, family, planes));
   }
 
@@ -383,7 +399,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
                 forces.put(k, i + part, Narrow::load(w + k * lanes) * signed_copy<Mirrored>(m, k));
           }
         if (end > run.length)
-          forces.rest(Vectors == 1 ? 1 : used_, end - lanes,
+          forces.keep(Vectors == 1 ? 1 : used_, end - lanes,
                       batches_.active(batches_[run.first_batch + run.batches - 1]));
         if constexpr (Vectors == 1)
           forces.subtract_from(state.f, batches_, run, weights_);

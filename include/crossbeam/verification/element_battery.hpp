@@ -8,6 +8,7 @@
 #include "crossbeam/verification/battery.hpp"
 #include "crossbeam/verification/patch.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <numbers>
