@@ -1,6 +1,7 @@
 // The kill suite: the verification's own tests, compiled against instrumented headers.
 //   CROSSBEAM_MUTANT=<site>:<variant>    run with this mutant switched on
 //   CROSSBEAM_MUTANT_SECONDS=<number>    processor time after which it is stopped by SIGVTALRM
+//   CROSSBEAM_MUTANT_MEGABYTES=<number>  address space that it gets
 //   CROSSBEAM_MUTATION_COVERAGE=<file>   note which sites each test reaches, and how long it takes
 // Exit status: 0 all tests pass, 1 one failed; where they pass with a mutant: 70 its site was not
 // reached, 71 it never changed a value, 77 it makes no sense for the types at hand.
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <ctime>
 
+#include <sys/resource.h>
 #include <sys/time.h>
 
 namespace crossbeam::mutation {
@@ -113,6 +115,12 @@ int main(int count, char** arguments) {
     timer.it_value.tv_sec = static_cast<time_t>(limit);
     timer.it_value.tv_usec = static_cast<suseconds_t>((limit - std::floor(limit)) * 1e6);
     setitimer(ITIMER_VIRTUAL, &timer, nullptr);
+  }
+  if (const char* megabytes = std::getenv("CROSSBEAM_MUTANT_MEGABYTES")) {
+    const rlim_t bytes = std::strtoull(megabytes, nullptr, 10) << 20;
+    const rlimit memory{bytes, bytes}, core{0, 0};
+    setrlimit(RLIMIT_AS, &memory);
+    setrlimit(RLIMIT_CORE, &core);
   }
   doctest::Context context;
   context.applyCommandLine(count, arguments);
