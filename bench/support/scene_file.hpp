@@ -157,7 +157,7 @@ class SceneFile {
   }
 
   /// Whether the scene's cells are followed from step to step.
-  [[nodiscard]] bool follows() const { return fabric_.cell_sweeps == 0; }
+  [[nodiscard]] bool follows() const { return fabric_.cell_solve == drape::CellSolve::follow; }
 
   /// Calls `use(law, iterated)` with the scene's law in the numbers R.
   template <class R, class Use>
@@ -167,8 +167,11 @@ class SceneFile {
     if (fabric_.formulation == drape::CellFormulation::second_order)
       with_shear<R>(SecondOrderCell<R>(parameters), SolverControl::converged(), "converged", use);
     else
-      with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl{fabric_.cell_sweeps},
-                    follows() ? "converged" : std::to_string(fabric_.cell_sweeps) + "_sweeps", use);
+      fabric_.cell_solve == drape::CellSolve::sweeps
+          ? with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl::fixed(fabric_.cell_sweeps),
+                          std::to_string(fabric_.cell_sweeps) + "_sweeps", use)
+          : with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl::converged(), "converged",
+                          use);
   }
 
  private:

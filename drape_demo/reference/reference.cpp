@@ -82,6 +82,7 @@ Json reference_of(const std::string& name, const std::function<Case<double>()>& 
 /// The formed part from the explicit run's end, and how far away its equilibrium is.
 Json formed_equilibrium() {
   DrapeCase c = load_scene(scene_path("realistic"));
+  c.fabric.cell_solve = CellSolve::sweeps;
   c.fabric.cell_sweeps = 8;
   c.process.hold = 1;
   Case<double> start = dome_case<double>(c);

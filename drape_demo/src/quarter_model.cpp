@@ -15,9 +15,7 @@ namespace crossbeam::drape {
 template <class R>
 QuarterModel<R>::QuarterModel(const DrapeCase& c)
     : case_(c),
-      grid_{std::max(1, static_cast<int>(std::lround(c.blank.half_width / c.blank.element_size))),
-            std::max(1, static_cast<int>(std::lround(c.blank.half_length / c.blank.element_size))),
-            c.blank.half_width, c.blank.half_length},
+      grid_(quarter_grid(c.blank)),
       mesh_(rectangle(c.blank.half_width, c.blank.half_length, grid_.nx, grid_.ny,
                       c.blank.layout * std::numbers::pi / 180)),
       punch_{c.process.stroke, c.process.stroke / c.process.speed},
@@ -83,11 +81,13 @@ template <class R>
 template <class Cell, class Shear>
 void QuarterModel<R>::add_membrane_with(const Cell& cell, const Shear& shear) {
   if constexpr (std::is_same_v<Cell, CrossedBeamCell<R>>)
-    if (case_.fabric.cell_sweeps == 0)
+    if (case_.fabric.cell_solve == CellSolve::follow)
       return add_membrane_of(WovenMembrane<Cell, Shear, CellPrice::followed>(cell, shear));
+  const SolverControl control = case_.fabric.cell_solve == CellSolve::sweeps
+                                    ? SolverControl::fixed(case_.fabric.cell_sweeps)
+                                    : SolverControl::converged();
   add_membrane_of(WovenMembrane<Cell, Shear>(cell, shear, FibreAngle<R>::right(),
-                                             YarnWidth::corrected,
-                                             SolverControl{case_.fabric.cell_sweeps}));
+                                             YarnWidth::corrected, control));
 }
 
 template <class R>
