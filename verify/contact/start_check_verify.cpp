@@ -50,7 +50,7 @@ TEST_CASE("V-CONT-35 a start deep in a tool is refused with the speed that it wo
   const Mesh<4> mesh = sheet();
   const NodalState<double> state(mesh, areal_mass);
   const auto text = [&](const auto& contact) {
-    return refusal([&] { contact.check_start(state, widest_element(mesh)); });
+    return refusal([&] { contact.check_start(state); });
   };
   // Laid exactly on the tool, beside it, or as deep as its own weight presses it (g = 0.01).
   CHECK(text(contact_of(ground())) == "");
@@ -97,9 +97,11 @@ TEST_CASE("V-CONT-35 a start deep in a tool is refused with the speed that it wo
     p.damping_ratio = 0;
     p.smoothing = smoothing;
     const double foretold = contact_of<Lane>(ground(z), p).start_penetration(state).speed;
-    CentralDifference<Lane> run(state, areal_mass);
-    run.add(tool<Lane>(ground(z), ToolMotion::fixed(), p, mesh.node_count));
-    run.start(0.01 / std::sqrt(p.penalty / areal_mass));
+    Model<double> model(state);
+    p.check_start = false;
+    model.add(tool<Lane>(ground(z), ToolMotion::fixed(), p, mesh.node_count));
+    CentralDifference<Lane> run(std::move(model),
+                                TimeStep::fixed(0.01 / std::sqrt(p.penalty / areal_mass)));
     for (int k = 0; k < 2000; ++k) run.step();
     REQUIRE(run.tools()[0]->stored_energy() == 0);
     return std::abs(double(run.state().v.get(0).z) / foretold - 1);
@@ -118,7 +120,7 @@ TEST_CASE("V-CONT-36 a tool that fits between the nodes of an element is refused
   const NodalState<double> state(mesh, areal_mass);
   CHECK(std::abs(widest_element(mesh) / (h * std::sqrt(2.0)) - 1) < 1e-15);
   const auto text = [&](const auto& contact) {
-    return refusal([&] { contact.check_start(state, widest_element(mesh)); });
+    return refusal([&] { contact.check_start(state); });
   };
   constexpr double infinite = std::numeric_limits<double>::infinity();
   CHECK(smallest_width(ground()) == infinite);
@@ -132,10 +134,12 @@ TEST_CASE("V-CONT-36 a tool that fits between the nodes of an element is refused
   for (double r : {20.0, 8.0, 7.0, 6.0, 2.0}) {
     const Sphere<double> ball({1.5 * h, 1.5 * h, -r - 0.1}, r);
     const bool refused = text(contact_of(ball)).find("tool: width = ") == 0;
-    CentralDifference<Lane> run(state, areal_mass);
-    run.add(tool<Lane>(ball, ToolMotion::prescribed([](double t) { return 2 * t; }), {},
-                       mesh.node_count));
-    run.start(1e-3);
+    Model<double> model(state);
+    ContactParameters unchecked;
+    unchecked.check_start = false;
+    model.add(tool<Lane>(ball, ToolMotion::prescribed([](double t) { return 2 * t; }), unchecked,
+                         mesh.node_count));
+    CentralDifference<Lane> run(std::move(model), TimeStep::fixed(1e-3));
     bool touched = false;
     while (!touched && run.time() < r + 1) {
       run.step();

@@ -68,11 +68,10 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     return out;
   }
   /// What can be said before a run from `state`; nothing unless parameters.check_start.
-  /// @param widest longest distance between two nodes of one element [mm] (widest_element)
   /// @throws InputError (require_gentle, require_no_gap)
-  void check_start(const NodalState<R>& state, double widest) const {
+  void check_start(const NodalState<R>& state) const override {
     if (!parameters_.check_start) return;
-    require_no_gap(smallest_width(shape_), widest);
+    require_no_gap(smallest_width(shape_), state.widest_element);
     require_gentle(start_penetration(state));
   }
 

@@ -4,10 +4,7 @@
 /// elements that a tool can pass without touching a node. Theory: docs/theory/contact.md.
 
 #include "crossbeam/base/error.hpp"
-#include "crossbeam/mesh/mesh.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace crossbeam {
@@ -49,19 +46,6 @@ inline void require_no_gap(double width, double widest_element) {
                        " mm: contact is felt at nodes alone, and this tool passes between them. "
                        "Refine the mesh, or set contact.check_start = false where the tool meets "
                        "finer elements only");
-}
-
-/// Longest distance between two nodes of one element [mm].
-template <int Corners>
-[[nodiscard]] double widest_element(const Mesh<Corners>& mesh) {
-  double squared = 0;
-  for (const auto& element : mesh.elements)
-    for (int i = 0; i < Corners; ++i)
-      for (int j = 0; j < i; ++j) {
-        const Vec3<double> across = mesh.nodes.get(element[i]) - mesh.nodes.get(element[j]);
-        squared = maximum(squared, dot(across, across));
-      }
-  return std::sqrt(squared);
 }
 
 }  // namespace crossbeam

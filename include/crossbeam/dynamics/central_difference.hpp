@@ -53,11 +53,16 @@ class CentralDifference {
   static constexpr int lanes = lanes_v<T>;
 
   /// The scheme at t = 0, from the nodes' positions and velocities.
+  /// @throws InputError for a step out of its range, and for nodes or elements that a tool finds
+  /// unfit to begin with (ToolContact::check_start)
   CentralDifference(Model<R> model, const TimeStep& step)
       : model_(std::move(model)), dt_(step.of(model_)) {
     model_.close();
     model_.nodes().v_predicted = model_.nodes().v;
-    for (const auto& t : model_.tools()) t->reset_culling();
+    for (const auto& t : model_.tools()) {
+      t->check_start(model_.nodes());
+      t->reset_culling();
+    }
     level_start_ = model_.arrange(least_level);
     level_travel_.assign(level_start_.size() - 1, 0);
     order_ = StepOrder(static_cast<int>(level_travel_.size()));

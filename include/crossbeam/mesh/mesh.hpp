@@ -162,6 +162,19 @@ struct SymmetryPlanes {
   bool y = false;  ///< the plane y = 0
 };
 
+/// Longest distance between two nodes of one element [mm].
+template <int Corners>
+[[nodiscard]] double widest_element(const Mesh<Corners>& mesh) {
+  double squared = 0;
+  for (const auto& element : mesh.elements)
+    for (int i = 0; i < Corners; ++i)
+      for (int j = 0; j < i; ++j) {
+        const Vec3<double> across = mesh.nodes.get(element[i]) - mesh.nodes.get(element[j]);
+        squared = maximum(squared, dot(across, across));
+      }
+  return std::sqrt(squared);
+}
+
 /// A thousandth of the mesh's shortest edge [mm]: nodes closer to a mirror plane lie on it. Meshes
 /// written with six digits are off by far less, and no element is as flat.
 template <int Corners>

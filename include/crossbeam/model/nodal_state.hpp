@@ -22,6 +22,7 @@ template <class R>
 struct NodalState {
   int node_count = 0;
   double areal_mass = 0;  ///< that the masses were made of [kg/mm^2]
+  double widest_element = 0;  ///< longest distance between two nodes of one element [mm]
   NodeVectors<double> x;  ///< positions x_n [mm]; kernels get their differences, tag [D-6]
   NodeVectors<R> v;       ///< velocities v_{n-1/2} [mm/ms]
   /// Velocities predicted for t_n from v_{n-1/2} and the last acceleration, of second order,
@@ -41,6 +42,7 @@ struct NodalState {
              const std::vector<NodeConstraint>& constraints = {})
       : node_count(mesh.node_count),
         areal_mass(mass_per_area),
+        widest_element(crossbeam::widest_element(mesh)),
         x(node_count),
         v(node_count),
         v_predicted(node_count),

@@ -127,6 +127,9 @@ class ToolContact {
   [[nodiscard]] double stored_energy() const { return stored_; }
   /// Contact pressure of every node [kN/mm^2].
   virtual void add_pressure(const NodalState<R>& state, std::vector<double>& pressure) const = 0;
+  /// What can be said against a simulation that begins with these nodes and the tool where it is.
+  /// @throws InputError naming what is wrong and both sides of it
+  virtual void check_start(const NodalState<R>& /*state*/) const {}
   /// Number of nodes that the tool was made for, where it was made for any.
   [[nodiscard]] virtual std::optional<int> node_count() const { return {}; }
   /// Bound of this contact's share in the squared frequency of fabric and tool [1/ms^2], tag [D-3].
