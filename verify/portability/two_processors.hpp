@@ -22,8 +22,9 @@ struct Guarded {
   double after = 1;
 };
 
-/// Sizes, alignments and offsets of what is public and no pack.
-inline std::array<std::size_t, 20> layout() {
+/// Sizes, alignments and offsets of what is public and no pack. (Static: of an inline function the
+/// linker would keep one for both files.)
+static std::array<std::size_t, 20> layout() {
   return {sizeof(Vector2<double>),
           alignof(Vector2<double>),
           sizeof(Matrix2<double>),
