@@ -10,14 +10,13 @@ if(NOT clang_tidy)
   return()
 endif()
 
-set(flags -x c++ -std=c++20 "-I${ROOT}/include")
+set(flags -std=c++20 "-I${ROOT}/include")
 foreach(folder IN LISTS EIGEN)
   list(APPEND flags -isystem "${folder}")
 endforeach()
 execute_process(
   COMMAND "${clang_tidy}" "--config-file=${ROOT}/.clang-tidy" --quiet --warnings-as-errors=*
-    --checks=-clang-diagnostic-pragma-once-outside-header
-    "${ROOT}/include/crossbeam/crossbeam.hpp" -- ${flags}
+    "${CMAKE_CURRENT_LIST_DIR}/check_tidy.cpp" -- ${flags}
   RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE counts)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "check_tidy:\n${text}${counts}")

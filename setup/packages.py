@@ -100,13 +100,15 @@ def python_with(modules):
 
 def missing_for(command):
     """The needs of a command that are not met. Without CMake and compiler nothing is known of the
-    packages; then they are not in the answer."""
+    packages; then all of them are in the answer."""
     needs = [need for need in read_table() if need.wanted_by(command)]
     missing = [need for need in needs if need.kind == "tool" and not TOOLS[need.name]()
                or need.kind == "program" and not shutil.which(need.name)]
+    packages = [need for need in needs if need.kind == "package"]
     if not BASIC & {need.name for need in missing}:
-        unknown = unknown_to_cmake([need.name for need in needs if need.kind == "package"])
-        missing += [need for need in needs if need.kind == "package" and need.name in unknown]
+        unknown = unknown_to_cmake([need.name for need in packages])
+        packages = [need for need in packages if need.name in unknown]
+    missing += packages
     modules = [need for need in needs if need.kind == "module"]
     if modules and not python_with([need.name for need in modules]):
         missing += [need for need in modules if not imports(SYSTEM_PYTHON, [need.name])]
@@ -164,23 +166,16 @@ def require(command):
     names of what it has to do without."""
     missing = missing_for(command)
     right = right_to_install()
-    # The packages are known once there is a compiler: hence twice.
-    for _ in range(2):
-        if not missing or not right:
-            break
+    if missing and right:
         try:
             install(missing, right)
         except Failure as failure:
             if any(not need.optional_for(command) for need in missing):
                 raise
             say(failure, "\nGoing on without.")
-            break
         missing = missing_for(command)
     needed = [need for need in missing if not need.optional_for(command)]
     if needed:
-        if BASIC & {need.name for need in needed}:
-            needed = [need for need in read_table()
-                      if need in needed or need.wanted_by(command) and need.kind == "package"]
         what = "still not found after installing" if right else "and not to be installed from here"
         raise Failure(f"missing, {what}:\n{named(needed)}\nInstall them with one of these package "
                       f"managers, then run the command again.\n({VERSIONS})")

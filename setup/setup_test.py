@@ -53,9 +53,24 @@ class Packages(unittest.TestCase):
         install.assert_not_called()
 
     def test_without_a_compiler_all_packages_are_named(self):
-        text, _ = self.refused([next(row for row in packages.read_table() if row.name == "c++")])
+        with mock.patch.dict(packages.TOOLS, {"c++": lambda: False}):
+            text, _ = self.refused(packages.missing_for("drape"))
         for name in ("g++", "libeigen3-dev", "libcli11-dev"):
             self.assertIn(name, text)
+        self.assertNotIn("doctest", text)
+
+    def test_what_is_optional_may_fail_to_install(self):
+        for commands, raises in ((("drape?",), False), (("drape",), True)):
+            with mock.patch.object(packages, "missing_for",
+                                   return_value=[need("plots", "module", commands)]), \
+                    mock.patch.object(packages, "right_to_install", return_value=([], "as root")), \
+                    mock.patch.object(packages, "install", side_effect=Failure("no network")), \
+                    contextlib.redirect_stdout(io.StringIO()):
+                if raises:
+                    with self.assertRaisesRegex(Failure, "no network"):
+                        packages.require("drape")
+                else:
+                    self.assertEqual(packages.require("drape"), {"plots"})
 
     def test_installs_in_vain(self):
         text, install = self.refused([need("foo")], ([], "as root"))

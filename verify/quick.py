@@ -94,18 +94,19 @@ def headers_among(files):
 
 
 def distance(folder, source, text, edited):
-    """0: the file itself or a test of an edited header's folder; 1: it includes the header, or tests
-    a direct user's folder; 2: neither."""
+    """0: the file itself, or the test of an edited header's folder that has its name; 1: another test
+    of that folder; 2: it includes the header, or tests a direct user's folder; 3: neither."""
+    subject = source.stem.removesuffix("_verify").removeprefix("unit_")
     if source in edited:
         return 0
-    best = 2
+    best = 3
     for header in headers_among(edited):
         name = header.relative_to(INCLUDE).as_posix()
         own, users = NEAR.get(header.parent.name, ([], []))
         if folder in own or folder == header.parent.name:
-            return 0
-        if folder in users or f'"{name}"' in text:
-            best = 1
+            best = min(best, 0 if subject in header.stem else 1)
+        elif folder in users or f'"{name}"' in text:
+            best = min(best, 2)
     return best
 
 

@@ -125,6 +125,10 @@ class Quick(unittest.TestCase):
             self.assertTrue(own)
             self.assertEqual(set(order[:len(own)]), set(own))
             self.assertEqual(len(order), len(quick.units()))
+        # Of that folder the test that has the header's name comes first.
+        for header, test in (("law/shear", "law/shear_verify"),
+                             ("contact/rigid_tool_contact", "contact/tool_contact_verify")):
+            self.assertEqual(self.order(f"include/crossbeam/{header}.hpp")[0], test)
 
     def test_an_edited_test_comes_first(self):
         self.assertEqual(self.order("verify/law/shear_verify.cpp")[0], "law/shear_verify")
