@@ -304,7 +304,7 @@ TEST_CASE("V-DRAPE-05 the energy ledger closes in double and in float, and every
 // modes. The first sample counts m v(-1/2) v(+1/2) / 2, which the start's m v(0)^2 / 2 is not.
 TEST_CASE("V-DRAPE-05 the ledger closes from a start out of equilibrium" *
           doctest::should_fail(true)) {
-  DrapeCase c = realistic(10, 4);
+  DrapeCase c = realistic(5, 2);
   c.blank.perturbation = 1e-3;
   const DrapeResult r = run(c);
   claim("V-DRAPE-05", std::abs(r.residual_over_punch_work), 1e-3,
