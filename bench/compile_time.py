@@ -48,10 +48,10 @@ using Law = crossbeam::WovenMembrane<crossbeam::CrossedBeamCell<double>,
                                      crossbeam::PolynomialShear<double>>;
 
 void run(const crossbeam::Mesh<4>& mesh, const Law& law, crossbeam::NodalState<double> state) {
-  crossbeam::CentralDifference<T> integrator(std::move(state), 1e-6);
-  integrator.add(std::make_unique<crossbeam::MembraneSweep<T, crossbeam::Quadrilateral<1>, Law>>(
+  crossbeam::Model<double> model(std::move(state));
+  model.add(std::make_unique<crossbeam::MembraneSweep<T, crossbeam::Quadrilateral<1>, Law>>(
       mesh, law, 1e-6, crossbeam::MembraneOptions{}));
-  integrator.start(integrator.critical_step());
+  crossbeam::CentralDifference<T> integrator(std::move(model), crossbeam::TimeStep::fraction(1));
   integrator.step();
 }
 """,

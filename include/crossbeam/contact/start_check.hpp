@@ -17,7 +17,7 @@ struct StartPenetration {
   double speed = 0;  ///< at which its penalty throws it off if nothing holds it [mm/ms]
 };
 
-/// A penalty may throw a node off at up to 10 mm/ms: five times the speed of a forming tool in the
+/// A penalty may throw a node off [F-7] at up to 10 mm/ms: five times the speed of a forming tool in the
 /// drape, and with the usual penalty and areal mass a depth of 0.06 mm, well above the
 /// rounding of coordinates and the error of a tabulated tool. A larger one lets fly what should
 /// begin at rest.
@@ -36,6 +36,7 @@ inline void require_gentle(const StartPenetration& start) {
           "where other forces hold the fabric there");
 }
 
+/// Tag [F-8].
 /// @param width the tool's, as smallest_width (tools/surface.hpp)
 /// @param widest_element longest distance between two nodes of one element [mm]
 /// @throws InputError for a tool that fits between the nodes of an element

@@ -119,8 +119,8 @@ class MembraneSweep : public ForceBlock<real_t<T>> {
   template <class U>
   using View = typename Batches::template View<U>;
 
-  /// Whether relative vectors are used at once where they are formed.
-  static constexpr bool in_one_pass = Element::points == 1 && std::is_same_v<R, double>;
+  /// Whether the first point's loop forms the relative vectors, which then need no pass for them.
+  static constexpr bool in_one_pass = std::is_same_v<R, double>;
 
   /// What the loops over one run hand on to each other: it stays in the first-level cache.
   struct Rows : PointRows<T, Batches::run_capacity> {
@@ -178,13 +178,16 @@ class MembraneSweep : public ForceBlock<real_t<T>> {
     auto c = constants(run, p);
     for (int i = 0; i < run.batches * lanes; i += lanes, c.next()) {
       Vec3<T> D[K];
-      if constexpr (in_one_pass) {
-        Vec3<T> corner[corners];
-        x.load_all(i, corner);
-        Element::relative_vectors(corner, D);
-      } else {
+      if constexpr (in_one_pass)
+        if (Element::points == 1 || p == 0) {
+          Vec3<T> corner[corners];
+          x.load_all(i, corner);
+          Element::relative_vectors(corner, D);
+          if constexpr (Element::points > 1)
+            unrolled<K>([&](auto k) CROSSBEAM_INLINE_LAMBDA { rows.D[k].store(i, D[k]); });
+        }
+      if (!in_one_pass || (Element::points > 1 && p > 0))
         unrolled<K>([&](auto k) CROSSBEAM_INLINE_LAMBDA { D[k] = rows.D[k].load(i); });
-      }
       if constexpr (Element::has_hourglass)
         if (has_hourglass) {
           Vec3<T> q = D[2];
