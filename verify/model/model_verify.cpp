@@ -248,6 +248,11 @@ TEST_CASE("V-MODEL-01 what belongs together is compared where it meets") {
           {"x = 0", "no node", "mm"});
   CHECK(symmetry_constraints(Mesh<4>(rounded, mesh.elements, mesh.fibres), {true, true}).size() ==
         symmetry_constraints(mesh, {true, true}).size());
+  // Bending takes the same nodes for the plane's.
+  const BendingStiffness both{1e-3, 1e-3};
+  CHECK(BendingSweep<Lane>(Mesh<4>(rounded, mesh.elements, mesh.fibres), both, areal_mass,
+                           {true, true})
+            .stencils() == BendingSweep<Lane>(mesh, both, areal_mass, {true, true}).stencils());
   // The step.
   refused(refusal([&] { TimeStep::fixed(0); }), {"time_step", "ms"});
   refused(refusal([&] { TimeStep::fraction(1.1); }), {"1.1", "at most 1"});

@@ -1,5 +1,5 @@
 // Compiled with -ffast-math, where compilers take it that no number is NaN or infinite: bad input is
-// refused, no NaN is answered as converged, a run with one stops; and a good answer stays what it is
+// refused, no NaN is answered as converged; and a good answer stays what it is
 // (docs/embedding.md). Returns 0, or 1 with what failed.
 
 #include "crossbeam/contact/rigid_tool_contact.hpp"

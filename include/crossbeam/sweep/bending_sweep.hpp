@@ -40,11 +40,12 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     const std::vector<double> area = mesh.tributary_areas();
     std::vector<double> row_sum(mesh.node_count, 0.0);
     std::vector<std::pair<Key, std::vector<Stencil>>> sorted;
-    const std::vector<Surroundings> around = surroundings(mesh, planes);
+    const Mirrors mirrors{planes, plane_tolerance(mesh)};
+    const std::vector<Surroundings> around = surroundings(mesh, mirrors);
     for (int n = 0; n < mesh.node_count; ++n)
       for (int family = 0; family < 2; ++family) {
         if (!(of_family[family] > 0)) continue;
-        const auto weights = difference(mesh, around, n, family, planes);
+        const auto weights = difference(mesh, around, n, family, mirrors);
         if (weights.empty()) continue;
         Stencil stencil;
         stencil.stiffness = of_family[family] * area[n];
@@ -137,6 +138,18 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   };
   static int label(int node, int mirror) { return node * 4 + mirror; }
 
+  /// The mirror planes, and which points lie on them.
+  struct Mirrors {
+    SymmetryPlanes planes;
+    double tolerance;  ///< [mm]
+    [[nodiscard]] bool x_holds(const Vec3<double>& p) const {
+      return planes.x && std::abs(p.x) <= tolerance;
+    }
+    [[nodiscard]] bool y_holds(const Vec3<double>& p) const {
+      return planes.y && std::abs(p.y) <= tolerance;
+    }
+  };
+
   struct Surroundings {
     std::vector<int> nodes;  ///< in their order, each once
     Vec3<double> warp{}, weft{}, normal{};
@@ -149,8 +162,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   }
 
   template <int Corners>
-  static std::vector<Surroundings> surroundings(const Mesh<Corners>& mesh,
-                                                const SymmetryPlanes& planes) {
+  static std::vector<Surroundings> surroundings(const Mesh<Corners>& mesh, const Mirrors& planes) {
     std::vector<Surroundings> out(mesh.node_count);
     std::vector<std::pair<int, int>> edges;  // of all elements
     for (int e = 0; e < mesh.element_count(); ++e) {
@@ -172,11 +184,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       const auto edge = edges[k];
       while (next < edges.size() && edges[next] == edge) ++next;
       const Vec3<double> A = mesh.nodes.get(edge.first), B = mesh.nodes.get(edge.second);
-      const double tolerance = 1e-9 * detail::norm(B - A);
-      const auto zero = [&](double a, double b) {
-        return std::abs(a) <= tolerance && std::abs(b) <= tolerance;
-      };
-      const bool mirrored = (planes.x && zero(A.x, B.x)) || (planes.y && zero(A.y, B.y));
+      const bool mirrored =
+          (planes.x_holds(A) && planes.x_holds(B)) || (planes.y_holds(A) && planes.y_holds(B));
       if (next - k == 1 && !mirrored) out[edge.first].rim = out[edge.second].rim = true;
     }
     return out;
@@ -187,7 +196,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   template <int Corners>
   static std::vector<StencilWeight> difference(const Mesh<Corners>& mesh,
                                                const std::vector<Surroundings>& around, int n,
-                                               int family, const SymmetryPlanes& planes) {
+                                               int family, const Mirrors& planes) {
     auto neighbours = ring(mesh, around[n], n, family, planes);
     auto weights = three_point_difference(label(n, 0), neighbours);
     if (!weights.empty() || around[n].rim) return weights;
@@ -204,24 +213,21 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   /// Neighbours of a node in the frame of one fibre family; beyond a mirror plane, their images.
   template <int Corners>
   static std::vector<StencilNeighbour> ring(const Mesh<Corners>& mesh, const Surroundings& around,
-                                            int n, int family, const SymmetryPlanes& planes) {
+                                            int n, int family, const Mirrors& planes) {
     const Vec3<double> X = mesh.nodes.get(n);
     const Vec3<double> F = family == 0 ? around.warp : around.weft;
     const Vec3<double> along = (1 / detail::norm(F)) * F;
     const Vec3<double> sideways = cross(around.normal, along);
     const Vec3<double> across = (1 / detail::norm(sideways)) * sideways;
-    double size = 0;
-    for (int m : around.nodes) size = maximum(size, detail::norm(mesh.nodes.get(m) - X));
-    const bool on_x = planes.x && std::abs(X.x) < 1e-9 * size;
-    const bool on_y = planes.y && std::abs(X.y) < 1e-9 * size;
+    const bool on_x = planes.x_holds(X), on_y = planes.y_holds(X);
     std::vector<StencilNeighbour> out;
     for (int m : around.nodes)
       for (int mirror = 0; mirror < 4; ++mirror) {
         if (((mirror & 1) && !on_x) || ((mirror & 2) && !on_y)) continue;
         Vec3<double> Y = mesh.nodes.get(m);
         // The image of a node on the plane is the node itself.
-        if ((mirror & 1) && std::abs(Y.x) < 1e-9 * size) continue;
-        if ((mirror & 2) && std::abs(Y.y) < 1e-9 * size) continue;
+        if ((mirror & 1) && planes.x_holds(Y)) continue;
+        if ((mirror & 2) && planes.y_holds(Y)) continue;
         if (mirror & 1) Y.x = -Y.x;
         if (mirror & 2) Y.y = -Y.y;
         const Vec3<double> d = Y - X;
