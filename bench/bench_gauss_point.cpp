@@ -1,6 +1,6 @@
 /// @file
-/// The Gauss point: fibre strain -> cell -> energy, stress, tangent; and with the element around it,
-/// corner positions -> corner forces.
+/// The Gauss point: fibre strain -> cell -> energy, stress, tangent; and with the element around
+/// it, corner positions -> corner forces.
 ///
 ///   gauss_point/<what>/<law>/<iterated how>/<number>
 ///

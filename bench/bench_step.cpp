@@ -1,8 +1,8 @@
 /// @file
 /// One whole step of the explicit scheme (forces, velocities, positions) on a flat taut sheet that
 /// vibrates: no contact. Options are left out one at a time from what the scene `realistic` uses;
-/// `one_by_one` has no two steps in flight; `policies` are the same with the options of cell and element fixed at compile time
-/// (support/policies.hpp).
+/// `one_by_one` has no two steps in flight; `policies` are the same with the options of cell and
+/// element fixed at compile time (support/policies.hpp).
 ///
 ///   step/<elements>/<options>/<number>
 
@@ -88,7 +88,7 @@ CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options)
         std::sin(std::numbers::pi * X.x / width) * std::sin(std::numbers::pi * X.y / length);
     state.v.set(n, {R(0), R(0), R(wave) * state.free.z[static_cast<std::size_t>(n)]});
   }
-  CentralDifference<T> integrator(std::move(state), areal_mass);
+  crossbeam::Model<R> model(std::move(state));
   const crossbeam::WovenMembrane<Cell, crossbeam::PolynomialShear<R>,
                                  crossbeam::CellPrice::followed>
       law(Cell(cell_parameters<R>()), measured_shear<R>());
@@ -96,21 +96,22 @@ CentralDifference<T> vibrating_sheet(const Sheet& sheet, const Options& options)
                                                     options.viscosity ? bulk_viscosity : 0};
   const auto add_membrane = [&]<class Element>() {
     using Block = crossbeam::MembraneSweep<T, Element, std::decay_t<decltype(law)>>;
-    integrator.add(std::make_unique<Block>(mesh, law, areal_mass, membrane_options));
+    model.add(std::make_unique<Block>(mesh, law, areal_mass, membrane_options));
   };
   if (options.points == 1)
     add_membrane.template operator()<Quad>();
   else
     add_membrane.template operator()<crossbeam::Quadrilateral<4>>();
   if (options.bending)
-    integrator.add(std::make_unique<crossbeam::BendingSweep<T>>(
+    model.add(std::make_unique<crossbeam::BendingSweep<T>>(
         mesh, crossbeam::BendingStiffness{bending_stiffness, bending_stiffness}, areal_mass));
-  integrator.start(0.9 * integrator.critical_step());
+  CentralDifference<T> integrator(std::move(model), crossbeam::TimeStep::fraction(0.9));
   for (int n = 0; n < 3; ++n) integrator.step();  // the first also evaluates the energy
   return integrator;
 }
 
-/// Flops of one element and step, counted on the sheet or, where it is larger, on `largest_counted`.
+/// Flops of one element and step, counted on the sheet or, where it is larger, on
+/// `largest_counted`.
 constexpr Sheet largest_counted{100, 200};
 
 template <class R, class Cell, class Quad>

@@ -18,8 +18,8 @@ import statistics
 import sys
 
 # --- The targets ----------------------------------------------------------------------------------
-# One entry per target: id, what, kind, the names of its benchmarks, sense and limit. A name may be a
-# regular expression and has to match as a whole; None: no benchmark yet.
+# One entry per target: id, what, kind, the names of its benchmarks, sense and limit. A name may be
+# a regular expression and has to match as a whole; None: no benchmark yet.
 #   sense "lower": at least the limit; "upper": at most the limit.
 # Kinds, with TIME the time per item (or the real time of an iteration, where there are no items):
 #   ratio      TIME of `above` / TIME of `below`

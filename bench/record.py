@@ -137,8 +137,8 @@ def rounded(ns):
 
 
 def print_times(results):
-    """One table per first part of the names; a row has what the next parts say, a column each number
-    type."""
+    """One table per first part of the names; a row has what the next parts say, a column each
+    number type."""
     tables = {}
     for name, entry in results.items():
         if name.endswith("/real_time"):  # of several threads: what they cost is no time per item

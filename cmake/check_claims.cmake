@@ -5,6 +5,8 @@
 #   page names an ID that is not in the table; no ID has two rows.
 # - A tag such as [C-7] is defined by a line of docs/theory that starts with "**[C-7]**", exactly
 #   once; headers cite defined tags only, and every defined tag is cited by a header.
+# - docs/tags.md says on which page each tag is defined, in the order of the tags. This writes it:
+#   cmake -DROOT=<repository> -DWRITE_TAGS=ON -P cmake/check_claims.cmake
 cmake_minimum_required(VERSION 3.24)
 
 set(id_pattern "V-[A-Z0-9]+-[0-9]+")
@@ -94,6 +96,53 @@ difference(found cited defined)
 count_faults("is cited in include, but not defined in docs/theory" found)
 difference(found defined cited)
 count_faults("is defined in docs/theory, but never cited in include" found)
+
+# The index: a line "[C-4] | page | section" for each definition, the number padded for sorting.
+set(index "")
+foreach(file IN LISTS theory_files)
+  cmake_path(GET file STEM page)
+  read_files(text "${file}")
+  string(REGEX MATCHALL "\n(##* [^\n]*|\\*\\*${tag_pattern}\\*\\*)" items "${text}")
+  set(section "")
+  foreach(item IN LISTS items)
+    if(item MATCHES "^\n##* (.*)$")
+      set(section "${CMAKE_MATCH_1}")
+    elseif(item MATCHES "<([A-Z]+)-([0-9]+[a-z]?)>")
+      string(LENGTH "${CMAKE_MATCH_2}" digits)
+      math(EXPR padding "4 - ${digits}")
+      string(REPEAT "0" ${padding} zeros)
+      set(tag "${CMAKE_MATCH_1}-${zeros}${CMAKE_MATCH_2}")
+      list(APPEND index "${tag} | <${page}>(theory/${page}.md) | ${section} |\n")
+    endif()
+  endforeach()
+endforeach()
+list(SORT index)
+set(tags_page "# Tags
+
+A tag names an equation or an argument. It stands in brackets in the code and on the pages of
+docs/theory, and is defined on one of them. This list is made by cmake/check_claims.cmake.
+
+| tag | page | section |
+| --- | --- | --- |
+")
+foreach(row IN LISTS index)
+  string(REGEX REPLACE "^([A-Z]+)-0*([0-9]+[a-z]?) " "| <\\1-\\2> " row "${row}")
+  string(APPEND tags_page "${row}")
+endforeach()
+string(REPLACE "<" "[" tags_page "${tags_page}")
+string(REPLACE ">" "]" tags_page "${tags_page}")
+if(WRITE_TAGS)
+  file(WRITE "${ROOT}/docs/tags.md" "${tags_page}")
+endif()
+set(tags_found "")
+if(EXISTS "${ROOT}/docs/tags.md")
+  file(READ "${ROOT}/docs/tags.md" tags_found)
+endif()
+if(NOT tags_found STREQUAL tags_page)
+  string(APPEND faults
+    "  docs/tags.md is not the list of the tags in docs/theory: write it anew by\n"
+    "    cmake -DROOT=<repository> -DWRITE_TAGS=ON -P cmake/check_claims.cmake\n")
+endif()
 
 if(faults)
   message(FATAL_ERROR "claims and tags:\n${faults}")

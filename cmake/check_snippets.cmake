@@ -2,11 +2,15 @@
 # block stands
 #   <!-- snippet: docs/examples/gauss_point.cpp law -->
 # and the region lies between `// [begin:law]` and `// [end:law]`; an indent of two is removed.
+# What an example prints is shown in a block below
+#   <!-- output: docs/examples/gauss_point.output -->
+# The block is the whole of that file, which a test compares with what the program prints.
 #   cmake -DROOT=<repository> -P check_snippets.cmake
 file(GLOB pages "${ROOT}/README.md" "${ROOT}/CONTRIBUTING.md" "${ROOT}/docs/*.md"
   "${ROOT}/docs/theory/*.md" "${ROOT}/docs/examples/*.md")
 set(errors "")
 set(count 0)
+set(outputs 0)
 
 # Semicolons and brackets would be read as list syntax.
 function(read_plain file result)
@@ -59,6 +63,26 @@ foreach(page IN LISTS pages)
       list(APPEND errors "${page}: the snippet ${source} ${region} differs from the compiled code")
     endif()
   endwhile()
+  read_plain("${page}" text)
+  while(text MATCHES "<!-- output: ([^ ]+) -->\n```[a-z]*\n")
+    set(source "${CMAKE_MATCH_1}")
+    set(head "${CMAKE_MATCH_0}")
+    string(FIND "${text}" "${head}" at)
+    string(LENGTH "${head}" length)
+    math(EXPR at "${at} + ${length}")
+    string(SUBSTRING "${text}" ${at} -1 text)
+    string(FIND "${text}" "```" end)
+    string(SUBSTRING "${text}" 0 ${end} block)
+    math(EXPR outputs "${outputs} + 1")
+    if(NOT EXISTS "${ROOT}/${source}")
+      list(APPEND errors "${page}: no file ${source}")
+      continue()
+    endif()
+    read_plain("${ROOT}/${source}" printed)
+    if(NOT printed STREQUAL block)
+      list(APPEND errors "${page}: the output ${source} differs from what the example prints")
+    endif()
+  endwhile()
   if(NOT marked EQUAL blocks)
     list(APPEND errors "${page}: ${blocks} C++ blocks, ${marked} of them cut from compiled code")
   endif()
@@ -68,4 +92,4 @@ if(errors)
   list(JOIN errors "\n  " errors)
   message(FATAL_ERROR "snippets:\n  ${errors}")
 endif()
-message(STATUS "${count} snippets are compiled code")
+message(STATUS "${count} snippets are compiled code, ${outputs} outputs are those of the examples")

@@ -1,12 +1,12 @@
 # Fails when a header includes against the direction of the layers (CONTRIBUTING.md):
 #   cmake -DROOT=<repository> -P cmake/layering.cmake
 # A header may include its own folder and the folders of the layers before its own; folders that
-# share a layer do not know each other. A folder's detail/ is for that folder alone; the umbrella may
-# include everything up to dynamics; outside adapters no third party but Eigen.
+# share a layer do not know each other. A folder's detail/ is for that folder alone; the umbrella
+# may include everything up to simulation; outside adapters Eigen is the only third party.
 cmake_minimum_required(VERSION 3.24)
 
 # One layer a word; folders of the same layer are joined by '|'.
-set(layers base kinematics|cell|tools law element mesh model sweep|contact|dynamics adapters
+set(layers base kinematics|cell|tools law element mesh model sweep|contact|dynamics simulation adapters
   verification)
 set(faults "")
 
@@ -39,7 +39,7 @@ foreach(header IN LISTS headers)
     endif()
   else()
     set(own_folder "")
-    layer_of(dynamics own_layer)
+    layer_of(simulation own_layer)
   endif()
 
   file(STRINGS "${ROOT}/include/${header}" includes REGEX "^[ \t]*#[ \t]*include")

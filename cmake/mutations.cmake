@@ -16,16 +16,35 @@ function(write_healthy_tree)
   file(WRITE "${tree}/include/crossbeam/cell/cell.hpp"
     "#include \"crossbeam/base/linalg.hpp\"\n#include <cmath>\n/// Energy, [C-1].\n")
   file(WRITE "${tree}/include/crossbeam/adapters/adapter.hpp" "#include <library/library.h>\n")
+  file(WRITE "${tree}/docs/examples/point.cpp"
+    "// [begin:law]\nint x = 1;\n// [end:law]\n")
+  file(WRITE "${tree}/docs/examples/point.output" "x 1\ny 2\n")
+  file(WRITE "${tree}/README.md"
+    "<!-- snippet: docs/examples/point.cpp law -->\n```cpp\nint x = 1;\n```\n"
+    "<!-- output: docs/examples/point.output -->\n```\nx 1\ny 2\n```\n")
   file(WRITE "${tree}/verify/README.md" "| ID | Statement |\n| --- | --- |\n| V-CELL-01 | text |\n")
   file(WRITE "${tree}/verify/cell/cell_verify.cpp" "TEST_CASE(\"V-CELL-01 text\") {}\n")
   file(WRITE "${tree}/docs/theory/cell.md" "# Cell\n\n**[C-1]** Energy (V-CELL-01).\n")
+  file(WRITE "${tree}/eigen/Eigen/Core" "")
+  foreach(file IN ITEMS .clang-format .clang-tidy)
+    file(COPY_FILE "${SCRIPTS}/../${file}" "${tree}/${file}")
+  endforeach()
   file(WRITE "${tree}/CITATION.cff" "title: x\nversion: 0.1.0\n")
   file(WRITE "${tree}/CHANGELOG.md" "# Changelog\n\n## [0.1.0] - today\n\n## [0.0.9] - before\n")
+  write_tags()
+endfunction()
+
+# docs/tags.md as the tree has to have it; whatever else the check finds is not asked for here.
+function(write_tags)
+  execute_process(
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" -DWRITE_TAGS=ON -P "${SCRIPTS}/check_claims.cmake"
+    OUTPUT_QUIET ERROR_QUIET)
 endfunction()
 
 function(run_check script)
   execute_process(
-    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" -P "${SCRIPTS}/${script}.cmake"
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${tree}" "-DEIGEN=${tree}/eigen"
+      -P "${SCRIPTS}/${script}.cmake"
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   set(result "${result}" PARENT_SCOPE)
   set(output "${output}" PARENT_SCOPE)
@@ -48,12 +67,24 @@ function(mutation script expected file)
 endfunction()
 
 write_healthy_tree()
-foreach(script IN ITEMS layering check_claims check_version)
+set(skipped "")
+foreach(script IN ITEMS layering check_claims check_version check_format check_tidy)
   run_check("${script}")
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${script} rejected the healthy tree:\n${output}")
   endif()
+  if(output MATCHES "skipped")
+    list(APPEND skipped "${script}")
+  endif()
 endforeach()
+
+if(NOT check_format IN_LIST skipped)
+  mutation(check_format "would change" include/crossbeam/cell/cell.hpp "int  two_spaces;\n")
+endif()
+if(NOT check_tidy IN_LIST skipped)
+  mutation(check_tidy "invalid case style for class 'wrong_case'" include/crossbeam/cell/cell.hpp
+    "class wrong_case {};\n")
+endif()
 
 mutation(layering "against the direction of the layers" include/crossbeam/base/linalg.hpp
   "#include \"crossbeam/cell/cell.hpp\"\n")
@@ -69,6 +100,14 @@ mutation(layering "third party outside adapters" include/crossbeam/cell/cell.hpp
   "#include <fmt/core.h>\n")
 mutation(layering "is not one of the layers" include/crossbeam/extra/extra.hpp "\n")
 
+write_healthy_tree()
+foreach(script IN ITEMS check_snippets check_links)
+  run_check("${script}")
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${script} rejected the healthy tree:\n${output}")
+  endif()
+endforeach()
+
 mutation(check_claims "V-CELL-02 stands in verify/README.md, but in no test name"
   verify/README.md "| V-CELL-02 | text |\n")
 mutation(check_claims "V-CELL-02 stands in verify/README.md, but on no page of docs/theory"
@@ -83,6 +122,20 @@ mutation(check_claims "[C-2] is cited in include, but not defined"
 mutation(check_claims "[C-2] is defined in docs/theory, but never cited"
   docs/theory/cell.md "**[C-2]** Force.\n")
 mutation(check_claims "[C-1] is defined more than once" docs/theory/cell.md "**[C-1]** Again.\n")
+mutation(check_claims "docs/tags.md is not the list of the tags" docs/theory/cell.md
+  "## Forces\n\n**[C-2]** Force.\n")
+mutation(check_claims "docs/tags.md is not the list of the tags" docs/tags.md "| [C-9] |\n")
+
+mutation(check_snippets "README.md: 2 C++ blocks, 1 of them" README.md "```cpp\nint y;\n```\n")
+mutation(check_snippets "differs from the compiled code" docs/index.md
+  "<!-- snippet: docs/examples/point.cpp law -->\n```cpp\nint x = 2;\n```\n")
+mutation(check_snippets "differs from what the example prints" docs/index.md
+  "<!-- output: docs/examples/point.output -->\n```\nx 1\ny 3\n```\n")
+mutation(check_snippets "differs from what the example prints" docs/examples/point.output "z 3\n")
+mutation(check_snippets "no file docs/examples/none.output" docs/index.md
+  "<!-- output: docs/examples/none.output -->\n```\nx 1\n```\n")
+
+mutation(check_links "no file theory/none.md" docs/index.md "See [none](theory/none.md#part).\n")
 
 foreach(file IN ITEMS CITATION.cff CHANGELOG.md)
   write_healthy_tree()

@@ -24,15 +24,14 @@ crossbeam::CellParameters<R> cell_parameters() {
 
 template <class R>
 crossbeam::ConstantShear<R> constant_shear() {
-  return {R(shear_modulus), crossbeam::FibreAngle<R>::right()};
+  return crossbeam::ConstantShear<R>(R(shear_modulus));
 }
 
 /// G(|gamma|) of the scene `realistic` [kN/mm].
 template <class R>
 crossbeam::PolynomialShear<R> measured_shear() {
-  return {crossbeam::PolynomialCurve<R>(
-              {R(0.051e-3), R(-0.83e-3), R(6.1275e-3), R(-12.0972e-3), R(8.48e-3)}),
-          crossbeam::FibreAngle<R>::right()};
+  return crossbeam::PolynomialShear<R>(crossbeam::PolynomialCurve<R>(
+      {R(0.051e-3), R(-0.83e-3), R(6.1275e-3), R(-12.0972e-3), R(8.48e-3)}));
 }
 
 template <class Cell, class Shear>

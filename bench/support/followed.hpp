@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Gauss points whose cells are followed from step to step, in the short loops that the sweep calls
-/// (PointRows): strain to stress, or corner positions to corner forces of the one-point
+/// Gauss points whose cells are followed from step to step, in the short loops of the law that the
+/// sweep calls: strain to stress, or corner positions to corner forces of the one-point
 /// quadrilateral without hourglass control.
 ///
 /// Every entry of the ring remembers its heights, and its strain moves by one time step between two
@@ -54,7 +54,8 @@ class FollowedPoints {
     typename Block::VectorRow corner[Quad::corners];
   };
 
-  /// All points at the strains of one ring. `use(first, block)` looks at the answers of every block.
+  /// All points at the strains of one ring. `use(first, block)` looks at the answers of every
+  /// block.
   template <class Use>
   CROSSBEAM_INLINE void visit(std::size_t ring, const Use& use) {
     const Law law = law_;  // a copy that no store can change
@@ -70,7 +71,7 @@ class FollowedPoints {
  private:
   CROSSBEAM_INLINE void evaluate(const Law& law, const Ring<R>& ring, int first, Block& at) {
     for (int i = 0; i < block; i += lanes) strain_point(law, ring, first + i, i, at);
-    at.follow(law, block, heights_.data() + 2 * first, 2 * lanes);
+    law.stresses(at, block, heights_.data() + 2 * first, 2 * lanes);
     if constexpr (chain == Chain::corners_to_forces)
       for (int i = 0; i < block; i += lanes) collect_point(i, at);
   }

@@ -149,7 +149,8 @@ class Membrane {
     return S;
   }
 
-  /// Forces of the corners of a four-node element with one point, from its corners before and after.
+  /// Forces of the corners of a four-node element with one point, from its corners before and
+  /// after.
   template <Solver solver>
   [[nodiscard]] Corners corner_forces(const Corners& X, const Corners& x,
                                       Eigen::Vector2d* previous = nullptr) const {

@@ -157,7 +157,7 @@ class SceneFile {
   }
 
   /// Whether the scene's cells are followed from step to step.
-  [[nodiscard]] bool follows() const { return fabric_.cell_sweeps == 0; }
+  [[nodiscard]] bool follows() const { return fabric_.cell_solve == drape::CellSolve::follow; }
 
   /// Calls `use(law, iterated)` with the scene's law in the numbers R.
   template <class R, class Use>
@@ -167,8 +167,11 @@ class SceneFile {
     if (fabric_.formulation == drape::CellFormulation::second_order)
       with_shear<R>(SecondOrderCell<R>(parameters), SolverControl::converged(), "converged", use);
     else
-      with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl{fabric_.cell_sweeps},
-                    follows() ? "converged" : std::to_string(fabric_.cell_sweeps) + "_sweeps", use);
+      fabric_.cell_solve == drape::CellSolve::sweeps
+          ? with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl::fixed(fabric_.cell_sweeps),
+                          std::to_string(fabric_.cell_sweeps) + "_sweeps", use)
+          : with_shear<R>(CrossedBeamCell<R>(parameters), SolverControl::converged(), "converged",
+                          use);
   }
 
  private:
@@ -176,27 +179,24 @@ class SceneFile {
   void with_shear(const Cell& cell, crossbeam::SolverControl control, const std::string& iterated,
                   const Use& use) const {
     using namespace crossbeam;
-    const auto angle = FibreAngle<R>::right();
     const auto real = [](const std::vector<double>& v) {
       return std::vector<R>(v.begin(), v.end());
     };
     const drape::ShearInput& shear = fabric_.shear;
     switch (shear.kind) {
       case drape::ShearLawKind::constant:
-        return use(
-            membrane(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure), control),
-            iterated);
+        return use(membrane(cell, ConstantShear<R>(R(shear.modulus), shear.measure), control),
+                   iterated);
       case drape::ShearLawKind::polynomial:
-        return use(
-            membrane(cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle),
-                     control),
-            iterated);
-      case drape::ShearLawKind::tabulated:
-        return use(membrane(cell,
-                            TabulatedShear<R>(
-                                TabulatedCurve<R>(real(shear.angle), real(shear.traction)), angle),
+        return use(membrane(cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients))),
                             control),
                    iterated);
+      case drape::ShearLawKind::tabulated:
+        return use(
+            membrane(cell,
+                     TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction))),
+                     control),
+            iterated);
     }
   }
 

@@ -1,9 +1,9 @@
-// The unit cell as a differential-algebraic system: masses at the yarns' ends obey Newton's law, the
-// crimp heights are algebraic unknowns that keep the yarns in equilibrium at every instant (index
-// 1). IDA solves both together; the condensed cell solves the heights inside its own call. They have
-// to agree. The tangent jumps where the yarns lose contact: a root function finds the instant, and
-// the integration starts anew with the other equation for the contact. Needs SUNDIALS. Units kN, mm,
-// ms, kg.
+// The unit cell as a differential-algebraic system: masses at the yarns' ends obey Newton's law,
+// the crimp heights are algebraic unknowns that keep the yarns in equilibrium at every instant
+// (index 1). IDA solves both together; the condensed cell solves the heights inside its own call.
+// They have to agree. The tangent jumps where the yarns lose contact: a root function finds the
+// instant, and the integration starts anew with the other equation for the contact. Needs SUNDIALS.
+// Units kN, mm, ms, kg.
 
 #include "crossbeam/crossbeam.hpp"
 

@@ -37,10 +37,10 @@ Frames integrate(Case<double> c, const reference::Tolerances& tolerances) {
 template <class R>
 Frames explicit_run(Case<R> c, double step_factor) {
   const double begin = processor_seconds();
-  CentralDifference<NativePack<R>> run(std::move(c.model));
-  const double least = step_factor * run.critical_step();
+  const double least = step_factor * c.model.critical_step();
   const long steps = static_cast<long>(std::ceil(c.duration / 10 / least));
-  run.start(c.duration / 10 / static_cast<double>(steps));
+  CentralDifference<NativePack<R>> run(
+      std::move(c.model), TimeStep::fixed(c.duration / 10 / static_cast<double>(steps)));
   Frames out;
   for (int k = 1; k <= 10; ++k) {
     run.advance(steps);

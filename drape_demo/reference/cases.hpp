@@ -53,6 +53,7 @@ inline DrapeCase smooth_dome() {
   c.contact.friction_model = Friction::smooth;
   c.contact.viscous_slip = 0.1;
   c.contact.smoothing = 0.05;
+  c.fabric.cell_solve = CellSolve::sweeps;
   c.fabric.cell_sweeps = 5;
   return c;
 }

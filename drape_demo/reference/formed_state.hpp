@@ -21,10 +21,10 @@ FormedState formed_state(const Model<R>& model, const Mesh<4>& mesh, int nx, int
   FormedState out{nx, ny, {}, {}, {}};
   for (int n = 0; n < mesh.node_count; ++n) {
     out.flat.push_back(mesh.nodes.get(n));
-    out.points.push_back(model.state.x.get(n));
+    out.points.push_back(model.nodes().x.get(n));
   }
   std::vector<ElementSample> samples;
-  for (const auto& block : model.blocks) block->sample(model.state, samples);
+  for (const auto& block : model.blocks()) block->sample(model.nodes(), samples);
   for (const ElementSample& s : samples)
     out.shear.push_back(s.shear_angle * 180 / std::numbers::pi);
   return out;

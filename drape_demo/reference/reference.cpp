@@ -82,11 +82,11 @@ Json reference_of(const std::string& name, const std::function<Case<double>()>& 
 /// The formed part from the explicit run's end, and how far away its equilibrium is.
 Json formed_equilibrium() {
   DrapeCase c = load_scene(scene_path("realistic"));
+  c.fabric.cell_solve = CellSolve::sweeps;
   c.fabric.cell_sweeps = 8;
   c.process.hold = 1;
   Case<double> start = dome_case<double>(c);
-  CentralDifference<NativePack<double>> run(std::move(start.model));
-  run.start(0.9 * run.critical_step());
+  CentralDifference<NativePack<double>> run(std::move(start.model), TimeStep::fraction(0.9));
   while (run.time() < start.duration) run.step();
   const FormedState before = formed_state(run.model(), start.mesh, start.nx, start.ny);
   StaticProblem problem(run.model(), run.time());

@@ -5,6 +5,7 @@
 /// friction; and nothing in it has a step or a memory, so that any integrator can run it.
 
 #include "crossbeam/crossbeam.hpp"
+#include "crossbeam/sweep/membrane_tangent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,12 +45,10 @@ struct SphereSheet {
   template <class R>
   [[nodiscard]] auto law() const {
     const auto angle = FibreAngle<R>::right();
-    return WovenMembrane(
-        CrossedBeamCell<R>(CellParameters<R>{}),
-        PolynomialShear<R>(PolynomialCurve<R>({R(0.051e-3), R(-0.83e-3), R(6.1275e-3),
-                                               R(-12.0972e-3), R(8.48e-3)}),
-                           angle),
-        angle, YarnWidth::corrected, SolverControl::fixed(cell_sweeps));
+    return WovenMembrane(CrossedBeamCell<R>(CellParameters<R>{}),
+                         PolynomialShear<R>(PolynomialCurve<R>(
+                             {R(0.051e-3), R(-0.83e-3), R(6.1275e-3), R(-12.0972e-3), R(8.48e-3)})),
+                         angle, YarnWidth::corrected, SolverControl::fixed(cell_sweeps));
   }
 
   template <class R>
@@ -71,14 +70,14 @@ struct SphereSheet {
         const double uniform = static_cast<double>(random >> 11) * 0x1.0p-52 - 1;
         state.x.z[k] = static_cast<double>(state.free.z[k]) * (perturbation * uniform);
       }
-    Model<R> out(std::move(state), areal_mass, mass_damping);
+    Model<R> out(std::move(state), mass_damping);
     const MembraneOptions options{1e-4, 0.06};
     if (gauss_points == 1)
-      out.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, Law>>(sheet, law<R>(), areal_mass,
-                                                                        options));
+      out.add(std::make_unique<MembraneSweepWithTangent<T, Quadrilateral<1>, Law>>(
+          sheet, law<R>(), areal_mass, options));
     else
-      out.add(std::make_unique<MembraneSweep<T, Quadrilateral<4>, Law>>(sheet, law<R>(), areal_mass,
-                                                                        options));
+      out.add(std::make_unique<MembraneSweepWithTangent<T, Quadrilateral<4>, Law>>(
+          sheet, law<R>(), areal_mass, options));
     if (bending > 0)
       out.add(
           std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{bending, bending}, areal_mass));

@@ -70,6 +70,22 @@ def save(figure, folder, name):
         finally:
             partial.unlink(missing_ok=True)
     plt.close(figure)
+    enter_in_manifest(folder, [f"{name}.{kind}" for kind in ("png", "svg")])
+
+
+def enter_in_manifest(folder, names):
+    """manifest.json lists what the next result in the folder replaces: pictures, too."""
+    file = folder / "manifest.json"
+    manifest = json.loads(file.read_text(encoding="utf-8"))
+    entries = [entry for entry in manifest["files"] if entry["name"] not in names]
+    for name in names:
+        status = (folder / name).stat()
+        entries.append(
+            {"name": name, "bytes": status.st_size, "modified_ns": status.st_mtime_ns})
+    manifest["files"] = entries
+    partial = folder / "manifest.json.partial"
+    partial.write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
+    os.replace(partial, file)
 
 
 # --------------------------------------------------------------------------------------------------

@@ -17,6 +17,9 @@ namespace crossbeam::drape {
 enum class CellFormulation { energy, second_order };  ///< E-U, or Eq. 24-25 as printed
 enum class ShearLawKind { constant, polynomial, tabulated };
 enum class Precision { double_, float_ };
+/// How the energy cell finds its heights at every point and step: one residual evaluation from
+/// those of the step before, Newton sweeps until converged, or a fixed number of them.
+enum class CellSolve { follow, converge, sweeps };
 
 struct ShearInput {
   ShearLawKind kind = ShearLawKind::polynomial;
@@ -31,9 +34,8 @@ struct ShearInput {
 struct FabricInput {
   CellFormulation formulation = CellFormulation::energy;
   CellParameters<double> cell{};
-  /// Newton sweeps of the energy cell at every point and step, 1..20; 0: the heights are followed from
-  /// step to step by one residual evaluation
-  int cell_sweeps = 0;
+  CellSolve cell_solve = CellSolve::follow;  ///< of the energy cell
+  int cell_sweeps = 3;                       ///< CellSolve::sweeps: how many, 1..20
   ShearInput shear{};
   double warp_bending_stiffness = 1.4e-3;  ///< D1 [kN mm]; 0 switches bending off
   double weft_bending_stiffness = 1.4e-3;  ///< D2 [kN mm]
@@ -79,11 +81,12 @@ struct IntegrationInput {
   double mass_damping = 0.02;    ///< [1/ms]
   double bulk_viscosity = 0.06;  ///< linear, on the fibre stretch rates [-]
   Precision precision = Precision::double_;
-  int threads = 1;  ///< that share a step; the result is the same in every bit
+  int threads = 1;                       ///< that share a step; the result is the same in every bit
+  std::int64_t step_limit = 10'000'000;  ///< a run of more steps is refused
 };
 
 struct OutputInput {
-  int frames = 20;           ///< .vtu frames over the run
+  int frames = 20;           ///< .vtu frames, from the start to the end
   int ledger_samples = 200;  ///< ledger rows over the run
 };
 

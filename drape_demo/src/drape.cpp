@@ -5,6 +5,8 @@
 
 #include "crossbeam/crossbeam.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -24,13 +26,34 @@ double cpu_seconds(int threads) {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// The steps before which a frame is taken: the first at the start, the last at the end, the others
+/// evenly between. A single one is the end.
+class FrameSteps {
+ public:
+  FrameSteps(std::int64_t steps, std::int64_t frames) : steps_(steps), frames_(frames) {
+    if (frames - 1 > steps)
+      throw InputError("output.frames", std::to_string(frames), "",
+                       "at most one more than the steps of the run, " + std::to_string(steps + 1));
+  }
+  std::int64_t operator[](std::int64_t frame) const {
+    if (frame + 1 >= frames_) return steps_;
+    return steps_ * frame / (frames_ - 1);
+  }
+
+ private:
+  std::int64_t steps_, frames_;
+};
+
 /// A quarter drape in one precision: mesh, blocks, tools and the loop.
 template <class R>
 class QuarterDrape {
  public:
   using T = NativePack<R>;
 
-  explicit QuarterDrape(const DrapeCase& c) : case_(c), built_(c), integrator_(built_.release()) {
+  explicit QuarterDrape(const DrapeCase& c)
+      : case_(c),
+        built_(c),
+        integrator_(integrator_of(built_.release(), c.integration.step_factor)) {
     // Faster than sound in the yarns nothing in this model moves, unless the yarns are softer than
     // the punch is slow.
     const double bound = CrossedBeamCell<double>(c.fabric.cell).membrane_stiffness_bound();
@@ -39,22 +62,26 @@ class QuarterDrape {
     integrator_.set_threads(c.integration.threads);
   }
 
-  DrapeResult run(const Progress& progress) {
+  DrapeResult run(const Progress& progress, const FrameSink& sink) {
     const auto wall_start = std::chrono::steady_clock::now();
     const double cpu_start = cpu_seconds(case_.integration.threads);
-    const double dt = case_.integration.step_factor * integrator_.critical_step();
+    const double dt = integrator_.time_step();
     const double duration = punch_.duration * (1 + case_.process.hold);
-    const auto steps = static_cast<std::int64_t>(std::ceil(duration / dt));
+    const std::int64_t steps = checked_steps(duration, dt);
     const std::int64_t sample_every =
         std::max<std::int64_t>(1, steps / case_.output.ledger_samples);
-    const std::int64_t frame_every = case_.output.frames > 0
-                                         ? std::max<std::int64_t>(1, steps / case_.output.frames)
-                                         : steps + 1;
-    constexpr std::int64_t update_every = 128;
-    integrator_.start(dt);
+    const FrameSteps frame_steps(steps, case_.output.frames);
+    std::int64_t frames = 0;  // that were handed out
+    // Seldom enough to cost nothing, and often enough that Ctrl-C is noticed on a large mesh too.
+    const std::int64_t update_every =
+        std::clamp<std::int64_t>(2'000'000 / mesh_.element_count(), 4, 128);
+    for (int e = 0; e < mesh_.element_count(); ++e) result_.quads.push_back(mesh_.elements[e]);
     for (std::int64_t n = 0; n < steps;) {
       const double stroke = punch_(integrator_.time());
-      if (n % frame_every == 0) result_.frames.push_back(frame(stroke));
+      if (n == frame_steps[frames]) {
+        if (sink) sink(result_.quads, frame(stroke));
+        ++frames;
+      }
       if (n % update_every == 0)
         progress.update(static_cast<double>(n) / static_cast<double>(steps), stroke);
       if (n % sample_every == 0 || n + 1 == steps) {
@@ -65,14 +92,15 @@ class QuarterDrape {
         book(ledger, stroke);
         check_elements(stroke);
       } else {
-        std::int64_t next = steps - 1;
-        for (const std::int64_t every : {frame_every, update_every, sample_every})
+        std::int64_t next = std::min(steps - 1, frame_steps[frames]);
+        for (const std::int64_t every : {update_every, sample_every})
           next = std::min(next, (n / every + 1) * every);
         integrator_.advance(next - n);
         n = next;
       }
     }
-    result_.frames.push_back(frame(punch_(integrator_.time())));
+    result_.formed = frame(punch_(integrator_.time()));
+    if (sink) sink(result_.quads, result_.formed);
     progress.update(1.0, case_.process.stroke);
     measure();
     Cost& cost = result_.cost;
@@ -89,6 +117,26 @@ class QuarterDrape {
   }
 
  private:
+  /// A factor above 1 is the user's own risk.
+  static CentralDifference<T> integrator_of(Model<R> model, double step_factor) {
+    const double dt = step_factor * model.critical_step();
+    return CentralDifference<T>(std::move(model), TimeStep::fixed(dt));
+  }
+
+  /// How many steps the run takes.
+  [[nodiscard]] std::int64_t checked_steps(double duration, double dt) const {
+    const double steps = std::ceil(duration / dt);
+    const auto limit = static_cast<double>(case_.integration.step_limit);
+    if (!(steps <= limit))
+      throw InputError(
+          "integration.step_limit", std::to_string(case_.integration.step_limit), "",
+          "at least the " + detail::to_text(steps) + " steps of this run: " +
+              detail::to_text(duration) + " ms in steps of " + detail::to_text(dt) +
+              " ms. A higher process.speed or a larger blank.element_size needs fewer; a higher "
+              "limit admits the run");
+    return static_cast<std::int64_t>(steps);
+  }
+
   std::vector<ElementSample> sample() const {
     std::vector<ElementSample> samples;
     for (const auto& block : integrator_.blocks()) block->sample(integrator_.state(), samples);
@@ -107,21 +155,22 @@ class QuarterDrape {
 
   void book(const EnergyLedger& ledger, double stroke) {
     const auto& tools = integrator_.tools();
+    const auto term = [&](const char* name) { return ledger.has(name) ? ledger.value(name) : 0.0; };
     LedgerRow row;
     row.time = ledger.time;
     row.stroke = stroke;
     row.punch_work = tools[punch_tool]->work().tool;
     row.holder_work = tools[holder_tool]->work().tool;
-    row.yarn = ledger.internal.yarn;
-    row.shear = ledger.internal.shear;
-    row.bending = ledger.internal.bending;
-    row.hourglass = ledger.internal.hourglass;
-    row.contact = ledger.contact;
-    row.kinetic = ledger.kinetic;
-    row.friction = ledger.friction;
-    row.contact_damping = ledger.contact_damping;
-    row.mass_damping = ledger.mass_damping;
-    row.bulk_viscosity = ledger.internal.bulk_viscosity;
+    row.yarn = term("yarn");
+    row.shear = term("shear");
+    row.bending = term("bending");
+    row.hourglass = term("hourglass");
+    row.contact = term("contact");
+    row.kinetic = term("kinetic");
+    row.friction = term("friction");
+    row.contact_damping = term("contact_damping");
+    row.mass_damping = term("mass_damping");
+    row.bulk_viscosity = term("bulk_viscosity");
     row.residual = ledger.residual();
     result_.ledger.push_back(row);
 
@@ -129,8 +178,8 @@ class QuarterDrape {
     const double floor = 1e-3 * 0.5 * case_.fabric.areal_mass * case_.blank.half_width *
                          case_.blank.half_length * case_.process.speed * case_.process.speed;
     const double scale = std::abs(row.punch_work) + std::abs(row.holder_work) +
-                         std::abs(ledger.internal.stored()) + row.kinetic + row.contact +
-                         row.friction + row.contact_damping;
+                         std::abs(row.yarn + row.shear + row.bending + row.hourglass) +
+                         row.kinetic + row.contact + row.friction + row.contact_damping;
     if (!(std::abs(row.residual) <= 0.05 * scale + floor))
       throw RunError("stroke " + detail::to_text(stroke) +
                      " mm: the energy ledger does not close: residual " +
@@ -162,7 +211,9 @@ class QuarterDrape {
       if (!(s.cell_correction < 1e-3 * longest))
         what = "the cell is not in equilibrium: its heights are off by " +
                detail::to_text(s.cell_correction) + " mm, admissible below " +
-               detail::to_text(1e-3 * longest) + "; more cell_sweeps or a smaller step_factor help";
+               detail::to_text(1e-3 * longest) +
+               "; fabric.cell_solve = \"converge\" or a smaller "
+               "integration.step_factor helps";
       if (what.empty()) continue;
       const auto [x, y] = material_centre(static_cast<int>(e));
       throw RunError("stroke " + detail::to_text(stroke) + " mm, element " + std::to_string(e) +
@@ -215,8 +266,7 @@ class QuarterDrape {
   }
 
   void measure() {
-    for (int e = 0; e < mesh_.element_count(); ++e) result_.quads.push_back(mesh_.elements[e]);
-    const std::vector<double>& points = result_.frames.back().points;
+    const std::vector<double>& points = result_.formed.points;
     const std::vector<ElementSample> samples = sample();
     std::vector<double> shear;
     double slack_area = 0, area = 0;
@@ -263,7 +313,7 @@ class QuarterDrape {
 
 }  // namespace
 
-DrapeResult run(const DrapeCase& drape_case, const Progress& progress) {
+DrapeResult run(const DrapeCase& drape_case, const Progress& progress, const FrameSink& frames) {
   validate(drape_case);
   const YarnParameters<double>&warp = drape_case.fabric.cell.warp,
         &weft = drape_case.fabric.cell.weft;
@@ -276,9 +326,11 @@ DrapeResult run(const DrapeCase& drape_case, const Progress& progress) {
     throw InputError("blank.layout", detail::to_text(drape_case.blank.layout), "deg",
                      "0 for a fabric whose warp and weft differ: a quarter model at 45 deg mirrors "
                      "warp into weft");
+  progress.announce(fmt::format("building the model: {} elements",
+                                quarter_grid(drape_case.blank).element_count()));
   if (drape_case.integration.precision == Precision::float_)
-    return QuarterDrape<float>(drape_case).run(progress);
-  return QuarterDrape<double>(drape_case).run(progress);
+    return QuarterDrape<float>(drape_case).run(progress, frames);
+  return QuarterDrape<double>(drape_case).run(progress, frames);
 }
 
 }  // namespace crossbeam::drape

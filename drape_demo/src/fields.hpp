@@ -15,6 +15,8 @@
 
 #include "case.hpp"
 
+#include "crossbeam/dynamics/thread_team.hpp"
+
 #include <array>
 #include <limits>
 #include <string>
@@ -25,7 +27,7 @@ inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// Admissible numbers: an interval with open or closed ends, or two single values.
 struct Range {
-  enum class Kind { closed, low_open, open, one_of_two };
+  enum class Kind { closed, low_open, open, one_of_two, finite };
   Kind kind = Kind::closed;
   double low = -unbounded, high = unbounded;
 
@@ -35,6 +37,7 @@ struct Range {
       case Kind::low_open: return value > low && value <= high;
       case Kind::open: return value > low && value < high;
       case Kind::one_of_two: return value == low || value == high;
+      case Kind::finite: return true;
     }
     return false;
   }
@@ -48,6 +51,8 @@ constexpr Range above(double low) { return {Range::Kind::low_open, low, unbounde
 constexpr Range from_to(double low, double high) { return {Range::Kind::closed, low, high}; }
 constexpr Range above_to(double low, double high) { return {Range::Kind::low_open, low, high}; }
 constexpr Range between(double low, double high) { return {Range::Kind::open, low, high}; }
+/// Any finite number here; the library knows what is admissible.
+inline constexpr Range checked_by_the_library{Range::Kind::finite};
 constexpr Range either(double a, double b) { return {Range::Kind::one_of_two, a, b}; }
 
 template <class E>
@@ -80,6 +85,11 @@ constexpr auto names_of(Precision) {
   using E = Precision;
   return std::array<NamedValue<E>, 2>{{{E::double_, "double"}, {E::float_, "float"}}};
 }
+constexpr auto names_of(CellSolve) {
+  using E = CellSolve;
+  return std::array<NamedValue<E>, 3>{
+      {{E::follow, "follow"}, {E::converge, "converge"}, {E::sweeps, "sweeps"}}};
+}
 /// @}
 
 template <class E>
@@ -100,7 +110,8 @@ void visit_fields(Case& c, Visitor& v) {
 
   v.enter("fabric");
   v.choice("formulation", c.fabric.formulation);
-  v.integer("cell_sweeps", c.fabric.cell_sweeps, "-", from_to(0, 20));
+  v.choice("cell_solve", c.fabric.cell_solve);
+  v.integer("cell_sweeps", c.fabric.cell_sweeps, "-", from_to(1, 20));
   v.real("warp_bending_stiffness", c.fabric.warp_bending_stiffness, "kN mm", from_to(0, 1));
   v.real("weft_bending_stiffness", c.fabric.weft_bending_stiffness, "kN mm", from_to(0, 1));
   v.real("areal_mass", c.fabric.areal_mass, "kg/mm^2", above_to(0, 1e-3));
@@ -109,20 +120,21 @@ void visit_fields(Case& c, Visitor& v) {
   v.enter("cell");
   const auto yarn = [&v](auto& y, const char* name) {
     v.enter(name);
-    v.real("youngs_modulus", y.youngs_modulus, "kN/mm^2", above(0));
-    v.real("cross_section", y.cross_section, "mm^2", above(0));
-    v.real("second_moment_of_area", y.second_moment_of_area, "mm^4", at_least(0));
-    v.real("length", y.length, "mm", above(0));
+    v.real("youngs_modulus", y.youngs_modulus, "kN/mm^2", checked_by_the_library);
+    v.real("cross_section", y.cross_section, "mm^2", checked_by_the_library);
+    v.real("second_moment_of_area", y.second_moment_of_area, "mm^4", checked_by_the_library);
+    v.real("length", y.length, "mm", checked_by_the_library);
     v.leave();
   };
-  v.real("contact_modulus", c.fabric.cell.contact_modulus, "kN/mm^2", above(0));
-  v.real("contact_area", c.fabric.cell.contact_area, "mm^2", above(0));
-  v.real("contact_length", c.fabric.cell.contact_length, "mm", above(0));
-  v.real("warp_height_fraction", c.fabric.cell.warp_height_fraction, "-", between(0, 1));
-  v.real("bending_boundary_factor", c.fabric.cell.bending_boundary_factor, "-", above(0));
+  v.real("contact_modulus", c.fabric.cell.contact_modulus, "kN/mm^2", checked_by_the_library);
+  v.real("contact_area", c.fabric.cell.contact_area, "mm^2", checked_by_the_library);
+  v.real("contact_length", c.fabric.cell.contact_length, "mm", checked_by_the_library);
+  v.real("warp_height_fraction", c.fabric.cell.warp_height_fraction, "-", checked_by_the_library);
+  v.real("bending_boundary_factor", c.fabric.cell.bending_boundary_factor, "-",
+         checked_by_the_library);
   v.real("residual_compression_stiffness", c.fabric.cell.residual_compression_stiffness, "kN/mm",
-         at_least(0));
-  v.integer("symmetry", c.fabric.cell.symmetry, "-", either(1, 2));
+         checked_by_the_library);
+  v.integer("symmetry", c.fabric.cell.symmetry, "-", checked_by_the_library);
   yarn(c.fabric.cell.warp, "warp");
   yarn(c.fabric.cell.weft, "weft");
   v.leave();
@@ -175,7 +187,8 @@ void visit_fields(Case& c, Visitor& v) {
   v.real("mass_damping", c.integration.mass_damping, "1/ms", from_to(0, 10));
   v.real("bulk_viscosity", c.integration.bulk_viscosity, "-", from_to(0, 1));
   v.choice("precision", c.integration.precision);
-  v.integer("threads", c.integration.threads, "-", from_to(1, 64));
+  v.integer("threads", c.integration.threads, "-", from_to(1, ThreadTeam::most_threads));
+  v.integer("step_limit", c.integration.step_limit, "-", from_to(1, 1e12));
   v.leave();
 
   v.enter("output");

@@ -54,7 +54,8 @@ bool locate(const std::array<Point, 4>& q, const Point& p, double& xi, double& e
 /// straight lines: exact for quadratic fields, of third order.
 class GridField {
  public:
-  /// @param first  material coordinate of the first value, in elements: 0 for nodes, 1/2 for centres
+  /// @param first  material coordinate of the first value, in elements: 0 for nodes, 1/2 for
+  ///   centres
   /// @param values nu x nv numbers, v running faster, every `stride`-th from `offset` on
   GridField(int nu, int nv, double first, const std::vector<double>& values, int stride = 1,
             int offset = 0)
@@ -113,6 +114,13 @@ void refine(const GridField& x, const GridField& y, const Point& p, double& u, d
 }
 
 }  // namespace
+
+QuarterGrid quarter_grid(const BlankInput& blank) {
+  const auto count = [&](double length) {
+    return std::max(1, static_cast<int>(std::lround(length / blank.element_size)));
+  };
+  return {count(blank.half_width), count(blank.half_length), blank.half_width, blank.half_length};
+}
 
 std::vector<double> node_average(const QuarterGrid& grid, const std::vector<double>& on_elements) {
   std::vector<double> sum(grid.node_count(), 0.0), count(grid.node_count(), 0.0);

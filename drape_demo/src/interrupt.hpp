@@ -9,10 +9,18 @@ namespace crossbeam::drape {
 
 class Interrupted : public std::exception {
  public:
+  explicit Interrupted(int signal) : signal_(signal) {}
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
+  [[nodiscard]] int signal() const noexcept { return signal_; }
+
+ private:
+  int signal_;
 };
 
-/// From now on SIGINT, SIGTERM and SIGHUP only leave a note; a second one ends the program at once.
+/// From now on the signals that ask a program to end only leave a note: SIGINT, SIGTERM, SIGHUP and
+/// SIGQUIT, of which a second one ends the program at once; SIGXCPU, SIGUSR1, SIGUSR2 and SIGALRM.
+/// What the caller ignores stays ignored, as `nohup` and shells in the background want it. A reader
+/// that has gone is no reason to end (SIGPIPE): the writing fails instead.
 void catch_interrupts();
 
 /// Throws Interrupted when a signal has arrived.

@@ -4,6 +4,7 @@
 #include "presets.hpp"
 #include "scene.hpp"
 #include "spelling.hpp"
+#include "supplied.hpp"
 
 #include "crossbeam/base/version.hpp"
 
@@ -40,10 +41,11 @@ std::vector<Override> overrides() {
 }
 
 constexpr const char* footer = R"(
-The scene file sets every option that is not given. An earlier result in the output folder is
-replaced; a folder that holds anything else is refused.
+The scene file sets every option that is not given. Of an earlier result in the output folder the
+files that this program has written are replaced, and no others; a folder with other files only is
+refused.
 
-Exit code: 0 done, 1 results not written, 2 bad input, 3 the run failed, 130 interrupted.
+Exit code: 0 done, 1 results not written, 2 bad input, 3 the run failed, 128 + n signal n.
 
 Examples:
   crossbeam-drape                                      the realistic fabric, 5 mm, 2 m/s
@@ -52,14 +54,6 @@ Examples:
   crossbeam-drape --case paper --layout 45             constant shear modulus, +-45 deg
   crossbeam-drape --case paper-literal --perturb 1e-9  a membrane, slightly disturbed
   crossbeam-drape --case my_fabric.toml --holder 50    your own scene, 50 N on the holder)";
-
-/// Where an InputError's message says what is admissible.
-std::string admissible_part(const InputError& error) {
-  const std::string what = error.what();
-  const std::string separator = " is not admissible: ";
-  const auto at = what.find(separator);
-  return at == std::string::npos ? what : what.substr(at + separator.size());
-}
 
 void set_holder_force(DrapeCase& c, const std::string& newton) {
   constexpr double newton_per_kilonewton = 1000;
@@ -150,8 +144,10 @@ Options parse_options(const std::vector<std::string>& arguments) {
     refuse_command_line(app, error, arguments);
   }
 
-  options.scene = scene_path(case_name);
-  DrapeCase& c = options.drape_case = load_scene(options.scene);
+  DrapeCase& c = options.drape_case =
+      is_supplied_case(case_name)
+          ? parse_scene(supplied_text(case_name + ".toml"), case_name + ".toml")
+          : load_scene(scene_path(case_name));
   if (app.count("--preset") > 0) apply_preset(c, preset);
   for (const auto& o : list)
     if (app.count(o.option) > 0) set_field(c, o.field, o.text, o.option);

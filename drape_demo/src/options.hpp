@@ -11,11 +11,10 @@
 namespace crossbeam::drape {
 
 struct Options {
-  DrapeCase drape_case;         ///< the scene with the overrides of the command line, checked
-  std::filesystem::path scene;  ///< the file it came from
-  std::filesystem::path out;    ///< folder of the results
-  bool quiet = false;           ///< no progress, no table
-  std::string message;          ///< if not empty: print it and stop (--help, --version)
+  DrapeCase drape_case;       ///< the scene with the overrides of the command line, checked
+  std::filesystem::path out;  ///< folder of the results
+  bool quiet = false;         ///< no progress, no table
+  std::string message;        ///< if not empty: print it and stop (--help, --version)
 };
 
 /// @param arguments without the program's name.

@@ -38,7 +38,7 @@ void apply_preset(DrapeCase& drape_case, const std::string& name) {
     drape_case.process.speed = p.speed;
     drape_case.integration.precision = p.precision;
     drape_case.integration.axial_scaling = p.axial_scaling;
-    if (p.penalty > 0) drape_case.contact.penalty = p.penalty;
+    if (p.penalty) drape_case.contact.penalty = *p.penalty;
     return;
   }
   throw InputError("--preset", name, "", preset_names());
@@ -49,7 +49,7 @@ const Preset* preset_of(const DrapeCase& drape_case) {
     if (drape_case.preset == p.name && drape_case.blank.element_size == p.element_size &&
         drape_case.process.speed == p.speed && drape_case.integration.precision == p.precision &&
         drape_case.integration.axial_scaling == p.axial_scaling &&
-        (p.penalty == 0 || drape_case.contact.penalty == p.penalty))
+        (!p.penalty || drape_case.contact.penalty == *p.penalty))
       return &p;
   return nullptr;
 }

@@ -5,6 +5,7 @@
 #include "case.hpp"
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace crossbeam::drape {
@@ -15,7 +16,8 @@ struct Preset {
   double speed;         ///< mean punch speed [m/s]
   Precision precision;
   double axial_scaling;  ///< of the yarns [-]
-  double penalty;  ///< of the contacts, which else limits the longer step [kN/mm^3]; 0: the scene's
+  /// Of the contacts, which else limits the longer step [kN/mm^3]; the scene's without one.
+  std::optional<double> penalty;
   /// Of the scene `realistic` at the end, against 2.5 mm, 0.5 m/s in double: what 2.5 mm are
   /// themselves away from finer meshes is not in it. Measured by `./run bench precision`,
   /// 2026-11-28.
@@ -30,8 +32,8 @@ struct Preset {
 
 inline constexpr std::array<Preset, 3> presets{{
     {"fast", 5, 2, Precision::float_, 25, 0.005, {4.5e-3, 0.32, 0.89, 0.30}, 0.34},
-    {"standard", 5, 1, Precision::float_, 1, 0, {2.4e-3, 0.13, 0.44, 0.13}, 3.4},
-    {"accurate", 2.5, 1, Precision::double_, 1, 0, {6.8e-4, 0.052, 0.16, 0.047}, 37},
+    {"standard", 5, 1, Precision::float_, 1, {}, {2.4e-3, 0.13, 0.44, 0.13}, 3.4},
+    {"accurate", 2.5, 1, Precision::double_, 1, {}, {6.8e-4, 0.052, 0.16, 0.047}, 37},
 }};
 
 /// "fast, standard or accurate"

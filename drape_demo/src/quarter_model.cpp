@@ -1,6 +1,7 @@
 #include "quarter_model.hpp"
 
 #include "crossbeam/crossbeam.hpp"
+#include "crossbeam/sweep/membrane_tangent.hpp"
 #include "double_dome.hpp"
 
 #include <algorithm>
@@ -14,13 +15,11 @@ namespace crossbeam::drape {
 template <class R>
 QuarterModel<R>::QuarterModel(const DrapeCase& c)
     : case_(c),
-      grid_{std::max(1, static_cast<int>(std::lround(c.blank.half_width / c.blank.element_size))),
-            std::max(1, static_cast<int>(std::lround(c.blank.half_length / c.blank.element_size))),
-            c.blank.half_width, c.blank.half_length},
+      grid_(quarter_grid(c.blank)),
       mesh_(rectangle(c.blank.half_width, c.blank.half_length, grid_.nx, grid_.ny,
                       c.blank.layout * std::numbers::pi / 180)),
       punch_{c.process.stroke, c.process.stroke / c.process.speed},
-      model_(initial_state(), c.fabric.areal_mass, c.integration.mass_damping) {
+      model_(initial_state(), c.integration.mass_damping) {
   add_membrane();
   if (c.fabric.warp_bending_stiffness > 0 || c.fabric.weft_bending_stiffness > 0)
     model_.add(std::make_unique<BendingSweep<NativePack<R>>>(
@@ -65,18 +64,16 @@ template <class R>
 template <class Cell>
 void QuarterModel<R>::add_membrane_with(const Cell& cell) {
   const ShearInput& shear = case_.fabric.shear;
-  const auto angle = FibreAngle<R>::right();
   const auto real = [](const std::vector<double>& v) { return std::vector<R>(v.begin(), v.end()); };
   switch (shear.kind) {
     case ShearLawKind::constant:
-      return add_membrane_with(cell, ConstantShear<R>(R(shear.modulus), angle, shear.measure));
+      return add_membrane_with(cell, ConstantShear<R>(R(shear.modulus), shear.measure));
     case ShearLawKind::polynomial:
-      return add_membrane_with(
-          cell, PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients)), angle));
+      return add_membrane_with(cell,
+                               PolynomialShear<R>(PolynomialCurve<R>(real(shear.coefficients))));
     case ShearLawKind::tabulated:
       return add_membrane_with(
-          cell,
-          TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction)), angle));
+          cell, TabulatedShear<R>(TabulatedCurve<R>(real(shear.angle), real(shear.traction))));
   }
 }
 
@@ -84,11 +81,13 @@ template <class R>
 template <class Cell, class Shear>
 void QuarterModel<R>::add_membrane_with(const Cell& cell, const Shear& shear) {
   if constexpr (std::is_same_v<Cell, CrossedBeamCell<R>>)
-    if (case_.fabric.cell_sweeps == 0)
+    if (case_.fabric.cell_solve == CellSolve::follow)
       return add_membrane_of(WovenMembrane<Cell, Shear, CellPrice::followed>(cell, shear));
+  const SolverControl control = case_.fabric.cell_solve == CellSolve::sweeps
+                                    ? SolverControl::fixed(case_.fabric.cell_sweeps)
+                                    : SolverControl::converged();
   add_membrane_of(WovenMembrane<Cell, Shear>(cell, shear, FibreAngle<R>::right(),
-                                             YarnWidth::corrected,
-                                             SolverControl{case_.fabric.cell_sweeps}));
+                                             YarnWidth::corrected, control));
 }
 
 template <class R>
@@ -104,8 +103,15 @@ void QuarterModel<R>::add_membrane_of(const Law& law) {
 template <class R>
 template <class Element, class Law>
 void QuarterModel<R>::add_block(const Law& law, const MembraneOptions& options) {
-  model_.add(std::make_unique<MembraneSweep<NativePack<R>, Element, Law>>(
-      mesh_, law, case_.fabric.areal_mass, options));
+  using T = NativePack<R>;
+  const double mass = case_.fabric.areal_mass;
+  // Of the statics of a formed part (drape_demo/reference), in double and without memory.
+  if constexpr (std::is_same_v<R, double> && !Law::follows_heights &&
+                MembraneLawWithTangent<Law, T>)
+    model_.add(
+        std::make_unique<MembraneSweepWithTangent<T, Element, Law>>(mesh_, law, mass, options));
+  else
+    model_.add(std::make_unique<MembraneSweep<T, Element, Law>>(mesh_, law, mass, options));
 }
 
 /// Punch below, die above, holder ring below. The fabric's mid-surface starts on the die flange, at

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 namespace crossbeam::drape {
 namespace {
@@ -68,18 +70,25 @@ class Reader {
 }  // namespace
 
 References load_references(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    throw InputError("reference file", file.string(), "", "a file that exists and can be read");
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return parse_references(text, file.string());
+}
+
+References parse_references(std::string_view text, const std::string& source) {
   toml::table root;
   try {
-    root = toml::parse_file(file.string());
+    root = toml::parse(text, source);
   } catch (const toml::parse_error& error) {
-    throw InputError("reference file",
-                     fmt::format("{}:{}", file.string(), error.source().begin.line), "",
+    throw InputError("reference file", fmt::format("{}:{}", source, error.source().begin.line), "",
                      fmt::format("a readable TOML file ({})", error.description()));
   } catch (const UnexpectedText& error) {
-    throw InputError("reference file", file.string(), "",
+    throw InputError("reference file", source, "",
                      fmt::format("a readable TOML file ({})", error.what()));
   }
-  const Reader read(root, file.string());
+  const Reader read(root, source);
   References r;
 
   r.net.source = read.text("net.source");

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace crossbeam::drape {
@@ -48,5 +49,8 @@ struct References {
 
 /// Throws InputError when the file is missing, is no TOML, or lacks a value.
 [[nodiscard]] References load_references(const std::filesystem::path& file);
+
+/// The same from text; `source` stands for the file name in messages.
+[[nodiscard]] References parse_references(std::string_view text, const std::string& source);
 
 }  // namespace crossbeam::drape

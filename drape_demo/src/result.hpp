@@ -58,7 +58,7 @@ struct WorkCounts {
 
 struct DrapeResult {
   std::vector<std::array<int, 4>> quads;  ///< node numbers, counter-clockwise, seen from above
-  std::vector<Frame> frames;              ///< the last one is the formed part
+  Frame formed;                           ///< the last frame
   std::vector<LedgerRow> ledger;
   std::vector<ShearPoint> shear_points;            ///< points 1..10
   std::vector<std::array<double, 2>> outline;      ///< formed free edges, from x = 0 to y = 0

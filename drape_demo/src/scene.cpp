@@ -10,11 +10,15 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <locale>
 #include <map>
+#include <numbers>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #ifndef CROSSBEAM_SCENE_DIR
@@ -34,6 +38,7 @@ std::string Range::text(bool whole) const {
       return noun + " > " + number(low) + (below ? " and <= " + number(high) : "");
     case Kind::open: return noun + " > " + number(low) + " and < " + fmt::format("{:.6g}", high);
     case Kind::one_of_two: return number(low) + " or " + number(high);
+    case Kind::finite: return noun;
   }
   return noun;
 }
@@ -59,6 +64,16 @@ bool choose(E& value, const std::string& text) {
   }
   return false;
 }
+
+/// The parts of an InputError's text: "<field> = <value> is not admissible: <admissible>".
+/// @{
+constexpr std::string_view separator = " is not admissible: ";
+std::string value_part(const InputError& error) {
+  const std::string what = error.what();
+  const std::size_t begin = error.field().size() + std::string_view(" = ").size();
+  return what.substr(begin, what.find(separator, begin) - begin);
+}
+/// @}
 
 std::string hint(const std::string& wrong, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(wrong, names);
@@ -87,7 +102,10 @@ class RangeCheck {
   template <class E>
   void choice(const char*, const E&) {}
   void flag(const char*, const bool&) {}
-  void text(const char*, const std::string&) {}
+  void text(const char* name, const std::string& value) {
+    if (printable(value, true) != value)
+      refuse(path_.name(name), printable(value), "", "a text without control characters");
+  }
   void list(const char* name, const std::vector<double>& values, const char* unit) {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (!std::isfinite(values[i]))
@@ -110,8 +128,22 @@ class RangeCheck {
 // -------------------------------------------------------------------------------------------------
 // Rules that join several fields
 
-/// The shear laws must not lose stiffness below zero up to this angle, beyond every formed part.
-constexpr double largest_shear = 1.2;
+/// The name becomes that of a folder.
+void check_name(const std::string& name, const Locator& where) {
+  constexpr std::size_t longest = 100;
+  const auto letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  const bool fits = std::all_of(name.begin(), name.end(), [&](char c) {
+    return letter(c) || std::string_view(" -_.,+()=").find(c) != std::string_view::npos;
+  });
+  if (name.empty() || (fits && letter(name.front()) && name.size() <= longest)) return;
+  throw InputError("name", printable(name), "",
+                   fmt::format("letters, digits, spaces and -_.,+()= of ASCII, first a letter or a "
+                               "digit, at most {}: the results' folder gets this name",
+                               longest) +
+                       where("name"));
+}
 
 /// The first place that is known.
 std::string first_known(const std::vector<std::string>& places) {
@@ -120,69 +152,27 @@ std::string first_known(const std::vector<std::string>& places) {
   return "";
 }
 
-void check_polynomial(const ShearInput& shear, const Locator& where) {
-  const std::string field = "fabric.shear.coefficients";
-  const std::string rule = fmt::format(
-      "G(g) = sum of coefficients[k] g^k must be finite and >= 0 for every shear angle g from 0 to "
-      "{} rad",
-      largest_shear);
-  if (shear.coefficients.empty())
-    throw InputError(field, "[]", "kN/mm",
-                     "at least one coefficient when fabric.shear.kind is \"polynomial\"" +
-                         first_known({where(field), where("fabric.shear.kind")}));
-  constexpr int samples = 1200;
-  for (int i = 0; i <= samples; ++i) {
-    const double angle = largest_shear * i / samples;
-    double modulus = 0;
-    for (auto c = shear.coefficients.rbegin(); c != shear.coefficients.rend(); ++c)
-      modulus = modulus * angle + *c;
-    if (!(modulus >= 0 && std::isfinite(modulus)))
-      throw InputError(
-          field, fmt::format("{}", fmt::join(shear.coefficients, ", ")), "kN/mm",
-          fmt::format("{}, but G({:.3f}) = {:.4g}", rule, angle, modulus) + where(field));
-  }
-}
-
-void check_table(const ShearInput& shear, const Locator& where) {
-  const std::string angle = "fabric.shear.angle", traction = "fabric.shear.traction";
-  const auto refuse = [&where](const std::string& field, const std::string& value,
-                               const std::string& unit, const std::string& rule) {
-    throw InputError(
-        field, value, unit,
-        rule + first_known({where(field.substr(0, field.find('['))), where("fabric.shear.kind")}));
-  };
-  if (shear.angle.size() < 2)
-    refuse(angle, fmt::format("{} numbers", shear.angle.size()), "rad",
-           "at least two angles when fabric.shear.kind is \"tabulated\"");
-  if (shear.traction.size() != shear.angle.size())
-    refuse(traction, fmt::format("{} numbers", shear.traction.size()), "kN/mm",
-           fmt::format("as many as fabric.shear.angle, {}", shear.angle.size()));
-  const auto increasing = [&refuse](const std::vector<double>& values, const std::string& field,
-                                    const std::string& unit) {
-    if (values[0] != 0)
-      refuse(field + "[0]", fmt::format("{}", values[0]), unit, "0: the table starts at (0, 0)");
-    for (std::size_t i = 1; i < values.size(); ++i)
-      if (!(values[i] > values[i - 1]))
-        refuse(fmt::format("{}[{}]", field, i), fmt::format("{}", values[i]), unit,
-               fmt::format("a number > {}, the one before it", values[i - 1]));
-  };
-  increasing(shear.angle, angle, "rad");
-  increasing(shear.traction, traction, "kN/mm");
-  if (!(shear.angle.back() < 1.5707))
-    refuse(fmt::format("{}[{}]", angle, shear.angle.size() - 1),
-           fmt::format("{}", shear.angle.back()), "rad", "a number < pi/2");
-}
-
-/// What the laws themselves refuse in the precision of the run, with the place in the file.
+/// What the laws themselves refuse in the precision of the run, under the names of the scene and
+/// with the place in the file.
 template <class R>
 void check_laws(const FabricInput& fabric, const Locator& where) {
+  /// @param fields whose place may be the one to tell, the likeliest first
   const auto located = [&where](const std::vector<std::string>& fields, const auto& build) {
     try {
       build();
     } catch (const InputError& error) {
-      std::vector<std::string> places;
+      // The library calls this table "shear"; that of the cell was told its name.
+      std::string name = error.field();
+      const std::string table = "shear.", in_scene = "fabric.shear.";
+      for (std::size_t at = 0; (at = name.find(table, at)) != std::string::npos;
+           at += in_scene.size())
+        name.insert(at, "fabric.");
+      std::vector<std::string> places{where(name)};
+      for (const auto& field : fields)
+        if (name.find(field) != std::string::npos) places.push_back(where(field));
       for (const auto& field : fields) places.push_back(where(field));
-      throw InputError(error, first_known(places));
+      throw InputError(InputError(name, value_part(error), "", admissible_part(error)),
+                       first_known(places));
     }
   };
   const auto real = [](const std::vector<double>& list) {
@@ -191,23 +181,28 @@ void check_laws(const FabricInput& fabric, const Locator& where) {
   located({"fabric.cell", "integration.precision"},
           [&] { crossbeam::validate(fabric.cell.cast<R>(), "fabric.cell"); });
   const ShearInput& shear = fabric.shear;
+  const std::string kind = "fabric.shear.kind", precision = "integration.precision";
   if (shear.kind == ShearLawKind::constant)
-    located({"fabric.shear.modulus", "integration.precision"}, [&] {
-      static_cast<void>(ConstantShear<R>(R(shear.modulus), FibreAngle<R>::right(), shear.measure));
-    });
+    located({"fabric.shear.modulus", precision},
+            [&] { static_cast<void>(ConstantShear<R>(R(shear.modulus), shear.measure)); });
   if (shear.kind == ShearLawKind::polynomial)
-    located({"fabric.shear.coefficients", "integration.precision"},
+    located({"fabric.shear.coefficients", kind, precision},
             [&] { static_cast<void>(PolynomialCurve<R>(real(shear.coefficients))); });
-  if (shear.kind == ShearLawKind::tabulated)
-    located({"fabric.shear.angle", "integration.precision"},
+  if (shear.kind == ShearLawKind::tabulated) {
+    located({"fabric.shear.angle", "fabric.shear.traction", kind, precision},
             [&] { static_cast<void>(TabulatedCurve<R>(real(shear.angle), real(shear.traction))); });
+    // The law would take it; a fabric cannot.
+    if (!(shear.angle.back() < std::numbers::pi / 2))
+      throw InputError(fmt::format("fabric.shear.angle[{}]", shear.angle.size() - 1),
+                       fmt::format("{}", shear.angle.back()), "rad",
+                       "a number < pi/2" + where("fabric.shear.angle"));
+  }
 }
 
 void check_case(const DrapeCase& c, const Locator& where) {
   RangeCheck ranges(where);
   visit_fields(c, ranges);
-  if (c.fabric.shear.kind == ShearLawKind::polynomial) check_polynomial(c.fabric.shear, where);
-  if (c.fabric.shear.kind == ShearLawKind::tabulated) check_table(c.fabric.shear, where);
+  check_name(c.name, where);
   if (c.integration.precision == Precision::float_)
     check_laws<float>(c.fabric, where);
   else
@@ -352,7 +347,8 @@ class TomlReader {
       value << fmt::format("[{} values]", array->size());
     else
       node.visit([&value](const auto& typed) { value << typed; });
-    throw InputError(field, value.str(), unit == "-" ? "" : unit, admissible + at(node));
+    throw InputError(printable(field), printable(value.str()), unit == "-" ? "" : unit,
+                     printable(admissible) + at(node));
   }
 
   void refuse_unknown_keys() const {
@@ -425,9 +421,18 @@ class FieldSetter {
   }
   template <class T>
   bool parse(T& value) const {
-    const char* end = text_.data() + text_.size();
-    const auto [stop, error] = std::from_chars(text_.data(), end, value);
-    return error == std::errc{} && stop == end;
+#if !defined(__cpp_lib_to_chars)  // libc++ before its version 20 has from_chars of integers only
+    if constexpr (std::is_floating_point_v<T>) {
+      std::istringstream text(text_);
+      text.imbue(std::locale::classic());
+      return !text_.starts_with('+') && text >> std::noskipws >> value && text.peek() == EOF;
+    } else
+#endif
+    {
+      const char* end = text_.data() + text_.size();
+      const auto [stop, error] = std::from_chars(text_.data(), end, value);
+      return error == std::errc{} && stop == end;
+    }
   }
   [[noreturn]] void refuse(const std::string& unit, const std::string& admissible) const {
     throw InputError(shown_as_, text_, unit == "-" ? "" : unit, admissible);
@@ -494,10 +499,14 @@ void validate(const DrapeCase& drape_case) {
 
 std::filesystem::path scene_folder() { return CROSSBEAM_SCENE_DIR; }
 
+bool is_supplied_case(const std::string& name) {
+  const auto& names = supplied_cases();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::filesystem::path scene_path(const std::string& case_or_path) {
   const auto& names = supplied_cases();
-  if (std::find(names.begin(), names.end(), case_or_path) != names.end())
-    return scene_folder() / (case_or_path + ".toml");
+  if (is_supplied_case(case_or_path)) return scene_folder() / (case_or_path + ".toml");
   const std::filesystem::path path(case_or_path);
   if (path.extension() != ".toml")
     throw InputError(
@@ -579,7 +588,15 @@ DrapeCase parse_scene(std::string_view text, const std::string& source) {
   TomlReader reader(root, source);
   visit_fields(drape_case, reader);
   reader.finish();
-  check_case(drape_case, reader.locator());
+  const Locator where = reader.locator();
+  const std::string sweeps = where("fabric.cell_sweeps");
+  if (!sweeps.empty() && drape_case.fabric.cell_solve != CellSolve::sweeps)
+    throw InputError("fabric.cell_sweeps", std::to_string(drape_case.fabric.cell_sweeps), "",
+                     "a number of sweeps beside fabric.cell_solve = \"sweeps\"; heights that are "
+                     "followed from step to step, before this version cell_sweeps = 0, are "
+                     "fabric.cell_solve = \"follow\"" +
+                         sweeps);
+  check_case(drape_case, where);
   return drape_case;
 }
 
@@ -588,6 +605,11 @@ void set_field(DrapeCase& drape_case, const std::string& field, const std::strin
   FieldSetter setter(field, text, shown_as);
   visit_fields(drape_case, setter);
   CROSSBEAM_EXPECTS(setter.found());
+}
+
+std::string admissible_part(const InputError& error) {
+  const std::string what = error.what();
+  return what.substr(what.find(separator, error.field().size()) + separator.size());
 }
 
 std::vector<std::string> field_names() {

@@ -4,6 +4,8 @@
 
 #include "case.hpp"
 
+#include "crossbeam/base/error.hpp"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -13,6 +15,9 @@ namespace crossbeam::drape {
 
 /// The folder of the scene files that come with the program.
 [[nodiscard]] std::filesystem::path scene_folder();
+
+/// Whether a case is one of those that come with the program: "realistic" and its like.
+[[nodiscard]] bool is_supplied_case(const std::string& name);
 
 /// The file of a case: "realistic" and its like are looked up in scene_folder(), a name that ends
 /// in ".toml" is a path. Throws InputError otherwise.
@@ -30,6 +35,9 @@ namespace crossbeam::drape {
 /// validate's business.
 void set_field(DrapeCase& drape_case, const std::string& field, const std::string& text,
                const std::string& shown_as);
+
+/// What an InputError's text says after "is not admissible: ".
+[[nodiscard]] std::string admissible_part(const InputError& error);
 
 /// The dotted names of all fields, in the order of the scene files.
 [[nodiscard]] std::vector<std::string> field_names();

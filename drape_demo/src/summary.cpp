@@ -1,11 +1,9 @@
 #include "summary.hpp"
 
 #include "fields.hpp"
-#include "interrupt.hpp"
 #include "ledger_terms.hpp"
 #include "presets.hpp"
 #include "text_file.hpp"
-#include "vtu.hpp"
 
 #include "crossbeam/base/version.hpp"
 
@@ -156,7 +154,7 @@ Json work_json(const DrapeCase& c, const DrapeResult& result) {
     (is_used ? used : skipped).push_back(what);
   };
   const bool energy_cell = c.fabric.formulation == CellFormulation::energy;
-  const bool followed = energy_cell && c.fabric.cell_sweeps == 0;
+  const bool followed = energy_cell && c.fabric.cell_solve == CellSolve::follow;
   sort(true, c.blank.gauss_points == 1 ? "1 Gauss point" : "2x2 Gauss points");
   sort(true, c.integration.precision == Precision::float_ ? "float" : "double");
   sort(!followed, "cell solved at every step");
@@ -277,15 +275,19 @@ std::string energy_csv(const DrapeResult& result) {
   return csv;
 }
 
+FrameWriter::FrameWriter(const std::filesystem::path& folder) : folder_(folder) {
+  std::filesystem::create_directory(folder_ / "frames");
+}
+
+void FrameWriter::write(const std::vector<std::array<int, 4>>& quads, const Frame& frame) {
+  const std::string name = frame_name(files_.size());
+  write_vtu(folder_ / name, quads, frame);
+  files_.push_back({frame.time, name});
+}
+
 void write_result(const std::filesystem::path& folder, const DrapeCase& drape_case,
-                  const DrapeResult& result, const References& references) {
-  std::filesystem::create_directory(folder / "frames");
-  std::vector<FrameFile> frames;
-  for (std::size_t i = 0; i < result.frames.size(); ++i) {
-    check_interrupt();
-    write_vtu(folder / frame_name(i), result.quads, result.frames[i]);
-    frames.push_back({result.frames[i].time, frame_name(i)});
-  }
+                  const DrapeResult& result, const std::vector<FrameFile>& frames,
+                  const References& references) {
   write_pvd(folder / "drape.pvd", frames);
   write_file(folder / "shear_points.csv", shear_points_csv(result));
   write_file(folder / "outline.csv", outline_csv(result));

@@ -1,7 +1,9 @@
 #pragma once
 /// @file
-/// Everything but the adapters. The order is the way the data flow: parameters -> cell -> law ->
-/// element -> mesh -> model -> sweep, contact -> time step. A header includes its own folder and those before it.
+/// Everything but the adapters and what only implicit methods and statics need, which who asks for
+/// it includes: model/first_order_system.hpp, model/statics.hpp, sweep/membrane_tangent.hpp. The
+/// order is the way the data flow: parameters -> cell -> law -> element -> mesh -> model -> sweep,
+/// contact -> time step. A header includes its own folder and those before it.
 
 #include "crossbeam/base/counting.hpp"
 #include "crossbeam/base/dual.hpp"
@@ -25,11 +27,14 @@
 #include "crossbeam/tools/stadium_ring.hpp"
 #include "crossbeam/tools/surface.hpp"
 
+#include "crossbeam/law/fabric.hpp"
+#include "crossbeam/law/membrane_law.hpp"
 #include "crossbeam/law/shear.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
 
 #include "crossbeam/element/bending.hpp"
 #include "crossbeam/element/coefficients.hpp"
+#include "crossbeam/element/frequency.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
 #include "crossbeam/element/triangle.hpp"
@@ -39,12 +44,10 @@
 #include "crossbeam/mesh/mesh.hpp"
 #include "crossbeam/mesh/numbering.hpp"
 
-#include "crossbeam/model/first_order_system.hpp"
 #include "crossbeam/model/force_block.hpp"
 #include "crossbeam/model/ledger.hpp"
 #include "crossbeam/model/model.hpp"
 #include "crossbeam/model/nodal_state.hpp"
-#include "crossbeam/model/statics.hpp"
 #include "crossbeam/model/tangent_entries.hpp"
 #include "crossbeam/model/tool_contact.hpp"
 #include "crossbeam/model/tool_motion.hpp"
@@ -52,8 +55,11 @@
 #include "crossbeam/sweep/bending_sweep.hpp"
 #include "crossbeam/sweep/index_batches.hpp"
 #include "crossbeam/sweep/lane_array.hpp"
+#include "crossbeam/sweep/membrane_constants.hpp"
+#include "crossbeam/sweep/membrane_memory.hpp"
+#include "crossbeam/sweep/membrane_points.hpp"
+#include "crossbeam/sweep/membrane_queries.hpp"
 #include "crossbeam/sweep/membrane_sweep.hpp"
-#include "crossbeam/sweep/membrane_tangent.hpp"
 #include "crossbeam/sweep/point_rows.hpp"
 #include "crossbeam/sweep/run_vectors.hpp"
 
@@ -63,3 +69,5 @@
 #include "crossbeam/dynamics/central_difference.hpp"
 #include "crossbeam/dynamics/step_order.hpp"
 #include "crossbeam/dynamics/thread_team.hpp"
+
+#include "crossbeam/simulation/fabric_model.hpp"

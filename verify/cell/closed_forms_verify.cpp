@@ -1,4 +1,5 @@
-// States of the energy cell that have an answer on paper, and the printed tables of docs/theory/cell.
+// States of the energy cell that have an answer on paper, and the printed tables of
+// docs/theory/cell.
 
 #include "cell/states.hpp"
 
@@ -78,8 +79,8 @@ TEST_CASE("V-CELL-06 stiffness of the unstrained cell has its closed form, taut 
     }
   }
   taut.claim("V-CELL-06", 1e-14, "K11 + K12 and K11 - K12 at rest, relative to EA/l0");
-  // A slack yarn's stiffness changes by EA/l0 over a strain of (H/L)^2, here down to 4e-5; the state
-  // is 1e-13 below rest.
+  // A slack yarn's stiffness changes by EA/l0 over a strain of (H/L)^2, here down to 4e-5; the
+  // state is 1e-13 below rest.
   slack.claim("V-CELL-06", 3e-9, "K11 just below rest, relative to EA/l0");
 }
 
@@ -303,7 +304,8 @@ TEST_CASE("V-CELL-27 the reading of Table 1: 17.6 mm^2 is the contact area, and 
                 5e-3, "literal A_warp = 17.6 mm^2: a balanced fabric with forces 2:1 [kN]");
   CHECK(ours.forces.F1 == doctest::Approx(ours.forces.F2).epsilon(1e-13));
 
-  // Which of the guessed numbers matter: the contact's stiffness hardly does, the crimp height does.
+  // Which of the guessed numbers matter: the contact's stiffness hardly does, the crimp height
+  // does.
   const auto largest_change = [](auto change) {
     Parameters changed = verify::table_1();
     change(changed);

@@ -87,8 +87,8 @@ struct ByDuals {
   }
 };
 
-/// Largest relative deviation of dual from closed derivatives. Scales: forces relative to EA/l0 times
-/// the elongation, tangents relative to EA/l0: the terms of which they are made.
+/// Largest relative deviation of dual from closed derivatives. Scales: forces relative to EA/l0
+/// times the elongation, tangents relative to EA/l0: the terms of which they are made.
 double deviation(const Cell& cell, const Answer& closed, double u1, double u2,
                  const ByDuals<double>& d) {
   const double ka = std::max(cell.warp().ka, cell.weft().ka);

@@ -117,8 +117,8 @@ TEST_CASE(
   rest.claim("V-CELL-35", 1e-14, "at rest, error of the force over EA/l0 L: some roundings");
   returns.claim("V-CELL-35", 1e-13, "after 60 evaluations from heights that were off by a tenth");
 
-  // Without bending: exactly nothing where the yarns are slack, at the heights that solve() has. The
-  // yarns differ, so that nobody takes one for the other.
+  // Without bending: exactly nothing where the yarns are slack, at the heights that solve() has.
+  // The yarns differ, so that nobody takes one for the other.
   Parameters unequal = verify::table_1_without_bending();
   unequal.weft.length *= 1.2;
   unequal.weft.cross_section *= 1.5;
@@ -174,7 +174,7 @@ TEST_CASE(
   };
   jumps(1.0);
   jumps(1.0F);
-  verify::claim("V-CELL-35", lost, 0, "jumps of up to 50 % whose answer is no number");
+  verify::claim("V-CELL-35", lost, 0, "jumps of up to 50 % whose answer is NaN");
 
   // Lanes.
   int differ = 0;

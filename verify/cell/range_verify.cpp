@@ -110,7 +110,8 @@ void compare(const crossbeam::CellParameters<R>& p, Counts& counts) {
   for (R value : {p.warp.second_moment_of_area, p.weft.second_moment_of_area})
     if (!(value == 0 || (value >= Limits::min() && value <= Limits::max()))) return;
   if (!(p.residual_compression_stiffness <= Limits::max())) return;
-  // A bending stiffness has the cubed chord below it; where that is no normal number, refusals are V-STRESS-01's.
+  // A bending stiffness has the cubed chord below it; where that is no normal number, refusals are
+  // V-STRESS-01's.
   if (expected.least_chord * expected.least_chord * expected.least_chord < Limits::min()) return;
   if (expected.close()) return;
   const crossbeam::CellRange<R> range(p);

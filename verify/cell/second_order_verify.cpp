@@ -1,5 +1,5 @@
-// The cell as the paper prints it (Eq. 24-25): what it shares with the energy cell, and its defects,
-// pinned as negative results.
+// The cell as the paper prints it (Eq. 24-25): what it shares with the energy cell, and its
+// defects, pinned as negative results.
 
 #include "cell/states.hpp"
 #include "crossbeam/base/simd.hpp"

@@ -53,16 +53,16 @@ Points dragged(const Shape& shape, double z, double push, bool classes) {
   }
   NodalState<double> state(moved, areal_mass);
   for (int n = 0; n < m.node_count; ++n) state.v.set(n, {3, 1, 0});
-  CentralDifference<T> run(std::move(state), areal_mass);
+  Model<real_t<T>> model(std::move(state));
   const auto law = fabric(pi / 2, 0.01);
-  run.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, std::decay_t<decltype(law)>>>(
+  model.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, std::decay_t<decltype(law)>>>(
       moved, law, areal_mass, MembraneOptions{1e-4, 0.06}));
-  run.add(std::make_unique<BendingSweep<T>>(moved, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
-  run.add(std::make_unique<Gravity<>>(Eigen::Vector3d(0, 0, push)));
+  model.add(std::make_unique<BendingSweep<T>>(moved, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
+  model.add(std::make_unique<Gravity<>>(Eigen::Vector3d(0, 0, push)));
   ContactParameters contact;
   contact.region_classes = classes;
-  run.add(tool<T>(shape, ToolMotion::fixed(), contact, m.node_count));
-  run.start(0.9 * run.critical_step());
+  model.add(tool<T>(shape, ToolMotion::fixed(), contact, m.node_count));
+  CentralDifference<T> run(std::move(model), TimeStep::fraction(0.9));
   for (int k = 0; k < 300; ++k) run.step();
   REQUIRE(run.tools()[0]->work().friction > 0);
   return positions(run);

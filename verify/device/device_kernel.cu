@@ -1,7 +1,7 @@
 // The kernels as device code: from the corners of an element to its corner forces, one element a
-// thread, and energies and tangents of a point, by the very functions that run on the processor. Compiled without fused multiply-adds
-// on either side, both compute with the same correctly rounded operations: the answers are equal
-// in every bit. Exit code 77: no GPU here, only compiled.
+// thread, and energies and tangents of a point, by the very functions that run on the processor.
+// Compiled without fused multiply-adds on either side, both compute with the same correctly rounded
+// operations: the answers are equal in every bit. Exit code 77: no GPU here, only compiled.
 
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/cell/crossed_beam.hpp"
@@ -209,8 +209,8 @@ bool compare_all() {
   const auto angle = FibreAngle<R>::right();
   const auto fixed = SolverControl::fixed(3);
   const CrossedBeamCell<R> cell(parameters);
-  const PolynomialShear<R> polynomial(PolynomialCurve<R>({R(1e-4), R(0), R(2e-3)}), angle);
-  const ConstantShear<R> constant(R(1e-3), angle);
+  const PolynomialShear<R> polynomial(PolynomialCurve<R>({R(1e-4), R(0), R(2e-3)}));
+  const ConstantShear<R> constant(R(1e-3));
   const auto law = [&](const auto& unit_cell, const auto& shear, SolverControl control) {
     return WovenMembrane(unit_cell, shear, angle, YarnWidth::corrected, control);
   };

@@ -57,7 +57,7 @@ double largest_change(const DrapeResult& a, const DrapeResult& b, int last) {
 }
 
 bool same_bits(const DrapeResult& a, const DrapeResult& b) {
-  const std::vector<double>&x = a.frames.back().points, &y = b.frames.back().points;
+  const std::vector<double>&x = a.formed.points, &y = b.formed.points;
   return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
 }
 
@@ -161,8 +161,8 @@ TEST_CASE("V-DRAPE-01 the realistic case at 5 mm and 1 m/s lies in the study's b
   REQUIRE(slow.quads.size() == 27 * 47);
   lies_in_the_bands("V-DRAPE-01", slow, {2, 8});
   show_points("V-DRAPE-01", slow, "5 mm, 1 m/s");
-  // Development runs are made at 2 m/s. Halving the speed may change the part by 0.5 deg: beyond it,
-  // a run is not quasi-static.
+  // Development runs are made at 2 m/s. Halving the speed may change the part by 0.5 deg: beyond
+  // it, a run is not quasi-static.
   for (int p : {2, 3, 4, 5, 6})
     claim("V-DRAPE-01", std::abs(shear(fast, p) - shear(slow, p)), 0.5,
           "deg, 2 m/s against 1 m/s, 5 mm, at point " + std::to_string(p));
@@ -173,8 +173,9 @@ TEST_CASE("V-DRAPE-01 the realistic case at 2.5 mm and 1 m/s lies in the study's
   REQUIRE(fine.quads.size() == 54 * 94);
   lies_in_the_bands("V-DRAPE-01", fine, {2});
   show_points("V-DRAPE-01", fine, "2.5 mm, 1 m/s");
-  // 5 mm at 2 m/s against it, as development runs are made. Point 5 sits on the peak, and a speed of
-  // 2 m/s takes 0.25 deg off it whatever the mesh: at 1 m/s the same mesh has to come within 0.3.
+  // 5 mm at 2 m/s against it, as development runs are made. Point 5 sits on the peak, and a speed
+  // of 2 m/s takes 0.25 deg off it whatever the mesh: at 1 m/s the same mesh has to come within
+  // 0.3.
   const DrapeResult coarse = run(realistic(5, 2)), slow = run(realistic(5, 1));
   for (int p : {2, 3, 4, 6})
     claim("V-DRAPE-01", std::abs(shear(coarse, p) - shear(fine, p)), 0.3,
@@ -230,22 +231,30 @@ TEST_CASE("V-DRAPE-03 the formed part is the benchmark's: peak, second maximum, 
   claim("V-DRAPE-03", worst, 2.0, "mm between the outline and the net's on the straight parts");
 }
 
-// Rounding noise of 1e-9 mm must not show: bending makes the drape deterministic. Without it wrinkles
-// localise and the same noise moves the answer by an order of magnitude more: pinned beside it.
+// Rounding noise of 1e-9 mm must not show: bending makes the drape deterministic. Without it
+// wrinkles localise and the same noise moves the answer by an order of magnitude more: pinned
+// beside it.
 namespace {
 
 void noise_does_not_show(const std::vector<std::uint64_t>& seeds) {
   DrapeCase c = realistic(5, 2);
-  const DrapeResult calm = run(c);
+  c.output.frames = 2;
+  const auto with_start = [&c](std::vector<double>& start) {
+    return drape::run(c, drape::Progress(), [&start](const auto&, const drape::Frame& frame) {
+      if (start.empty()) start = frame.points;
+    });
+  };
+  std::vector<double> calm_start;
+  const DrapeResult calm = with_start(calm_start);
   double worst = 0, largest_shift = 0;
   for (std::uint64_t seed : seeds) {
     c.blank.perturbation = 1e-9;
     c.blank.seed = seed;
-    const DrapeResult noisy = run(c);
+    std::vector<double> noisy_start;
+    const DrapeResult noisy = with_start(noisy_start);
     worst = std::max(worst, largest_change(calm, noisy, 8));
-    for (std::size_t k = 0; k < calm.frames[0].points.size(); ++k)
-      largest_shift =
-          std::max(largest_shift, std::abs(calm.frames[0].points[k] - noisy.frames[0].points[k]));
+    for (std::size_t k = 0; k < calm_start.size(); ++k)
+      largest_shift = std::max(largest_shift, std::abs(calm_start[k] - noisy_start[k]));
   }
   REQUIRE(largest_shift > 1e-10);  // the start really differs
   REQUIRE(largest_shift < 1e-8);
@@ -291,6 +300,17 @@ TEST_CASE("V-DRAPE-05 the energy ledger closes in double and in float, and every
         "deg, float against double at points 1 to 8");
 }
 
+// Nodes up to 1e-3 mm off their places are far out of equilibrium: v(0) = 0 and a(0) of the stiffest
+// modes. The first sample counts m v(-1/2) v(+1/2) / 2, which the start's m v(0)^2 / 2 is not.
+TEST_CASE("V-DRAPE-05 the ledger closes from a start out of equilibrium" *
+          doctest::should_fail(true)) {
+  DrapeCase c = realistic(5, 2);
+  c.blank.perturbation = 1e-3;
+  const DrapeResult r = run(c);
+  claim("V-DRAPE-05", std::abs(r.residual_over_punch_work), 1e-3,
+        "ledger residual over punch work, start perturbed by 1e-3 mm");
+}
+
 TEST_CASE("V-DRAPE-06 0.9 of the critical step runs, 1.5 of it blows up with a clear message") {
   DrapeCase c = realistic(5, 4);
   c.integration.step_factor = 0.9;
@@ -301,7 +321,8 @@ TEST_CASE("V-DRAPE-06 0.9 of the critical step runs, 1.5 of it blows up with a c
   CHECK(message.find("time step") != std::string::npos);
 }
 
-// The taut yarn's modulus is a penalty in a drape: tension comes from shear, friction and slackness.
+// The taut yarn's modulus is a penalty in a drape: tension comes from shear, friction and
+// slackness.
 TEST_CASE("V-DRAPE-12 yarns ten times softer along give the same part with longer steps") {
   DrapeCase c = realistic(5, 2);
   c.contact.penalty = 0.005;  // else the contact's own step is the shorter one
@@ -326,8 +347,9 @@ TEST_CASE("V-DRAPE-12 yarns ten times softer along give the same part with longe
         "deg, change at points 1 to 8 by the preset fast, 25 times softer and in float");
 }
 
-// Fibres at 45 deg to the mesh: with 2x2 points an element cannot shear without stretching its yarns
-// somewhere, and stores energy in them. One point with hourglass control of shear size does not.
+// Fibres at 45 deg to the mesh: with 2x2 points an element cannot shear without stretching its
+// yarns somewhere, and stores energy in them. One point with hourglass control of shear size does
+// not.
 TEST_CASE("V-DRAPE-07 one point cures the tension locking of a mesh at 45 deg to the yarns") {
   DrapeCase c = realistic(5, 2);
   c.blank.layout = 45;
@@ -375,7 +397,7 @@ TEST_CASE("V-DRAPE-13 two threads give the same part, and the counts of work add
   // Punch, die and holder ask every pack of nodes in every step; all kinds of answer occur.
   const drape::WorkCounts& work = one.work;
   const auto lanes = static_cast<std::int64_t>(crossbeam::lanes_v<crossbeam::NativePack<double>>);
-  const auto nodes = static_cast<std::int64_t>(one.frames.back().points.size() / 3);
+  const auto nodes = static_cast<std::int64_t>(one.formed.points.size() / 3);
   CHECK(work.contact_culled > 0);
   CHECK(work.contact_flat > 0);
   CHECK(work.contact_general > 0);

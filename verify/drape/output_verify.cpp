@@ -2,12 +2,14 @@
 
 #include "interrupt.hpp"
 #include "ledger_terms.hpp"
+#include "manifest.hpp"
 #include "output_folder.hpp"
 #include "presets.hpp"
 #include "progress.hpp"
 #include "references.hpp"
 #include "scene.hpp"
 #include "summary.hpp"
+#include "supplied.hpp"
 #include "table.hpp"
 #include "vtu.hpp"
 
@@ -56,12 +58,11 @@ DrapeResult small_result() {
     for (auto& value : values) value = number(random) * 1e3;
     return values;
   };
-  for (int f = 0; f < 2; ++f)
-    r.frames.push_back({1.5 * f,
-                        30.0 * f,
-                        numbers(24),
-                        {{"shear_angle", 1, numbers(8)}, {"contact_pressure", 1, numbers(8)}},
-                        {{"shear_angle", 1, numbers(3)}, {"warp_direction", 3, numbers(9)}}});
+  r.formed = {1.5,
+              60.0,
+              numbers(24),
+              {{"shear_angle", 1, numbers(8)}, {"contact_pressure", 1, numbers(8)}},
+              {{"shear_angle", 1, numbers(3)}, {"warp_direction", 3, numbers(9)}}};
   for (int i = 0; i < 5; ++i) {
     LedgerRow row;
     row.time = 0.25 * i;
@@ -90,10 +91,28 @@ DrapeResult small_result() {
 }
 
 DrapeCase some_case() { return load_scene(scene_path("realistic")); }
-References references() { return load_references(scene_folder() / "references.toml"); }
+References references() { return supplied_references(); }
 
-void write_all(const OutputFolder& folder) {
-  write_result(folder.path(), some_case(), small_result(), references());
+/// Two frames and everything else.
+void write_all(const fs::path& folder) {
+  const DrapeResult result = small_result();
+  FrameWriter frames(folder);
+  Frame start = result.formed;
+  start.time = 0;
+  frames.write(result.quads, start);
+  frames.write(result.quads, result.formed);
+  write_result(folder, some_case(), result, frames.files(), references());
+}
+void write_all(const OutputFolder& folder) { write_all(folder.path()); }
+
+void put_result(const fs::path& target) {
+  OutputFolder folder(target);
+  write_all(folder);
+  folder.commit();
+}
+
+bool holds_result(const fs::path& folder) {
+  return nlohmann::json::parse(file_content(folder / "summary.json"))["program"] == summary_program;
 }
 
 std::string refusal(const fs::path& target) {
@@ -189,11 +208,21 @@ TEST_CASE(
 
   fs::create_directories(scratch / "foreign");
   std::ofstream(scratch / "foreign/notes.txt") << "mine";
-  check_contains(refusal(scratch / "foreign"), {"foreign", "summary.json"});
-  // A summary.json of another program does not make it ours.
-  std::ofstream(scratch / "foreign/summary.json") << "{\"program\": \"another\"}";
-  check_contains(refusal(scratch / "foreign"), {"foreign", "summary.json"});
+  check_contains(refusal(scratch / "foreign"), {"foreign", "manifest.json", "notes.txt"});
+  // A summary, even of this program, does not make it ours, nor does another's manifest.
+  fs::create_directories(scratch / "mixed");
+  std::ofstream(scratch / "mixed/summary.json") << "{\"program\": \"crossbeam drape\"}";
+  check_contains(refusal(scratch / "mixed"), {"mixed", "summary.json"});
+  std::ofstream(scratch / "mixed/manifest.json") << "{\"program\": \"another\", \"files\": []}";
+  check_contains(refusal(scratch / "mixed"), {"mixed", "manifest.json"});
   CHECK(file_content(scratch / "foreign/notes.txt") == "mine");
+  fs::remove_all(scratch / "mixed");
+
+  fs::create_symlink(scratch / "nowhere", scratch / "link");
+  check_contains(refusal(scratch / "link"), {"--out", "link to nowhere"});
+  check_contains(refusal(scratch.path().string() + "/link/"), {"--out", "link to nowhere"});
+  CHECK_FALSE(fs::exists(scratch / "nowhere"));
+  fs::remove(scratch / "link");
 
   if (geteuid() != 0) {  // root may write anywhere
     fs::create_directories(scratch / "locked");
@@ -202,7 +231,7 @@ TEST_CASE(
     fs::permissions(scratch / "locked", fs::perms::owner_all);
     fs::remove(scratch / "locked");
   }
-  CHECK(scratch.entries() == 4);
+  CHECK(scratch.entries() == 3);
 }
 
 TEST_CASE("V-IO-09 a run that ends early leaves nothing behind") {
@@ -211,7 +240,7 @@ TEST_CASE("V-IO-09 a run that ends early leaves nothing behind") {
     try {
       const OutputFolder folder(scratch / "deep/er/out");
       std::ofstream(folder.path() / "shear_points.csv") << "half";
-      REQUIRE(scratch.entries() == 4);
+      REQUIRE(scratch.entries() == 6);  // deep, er, the hidden folder, its lock, result, the file
       throw crossbeam::RunError("the energy ledger does not close");
     } catch (const crossbeam::RunError&) {
     }
@@ -225,7 +254,7 @@ TEST_CASE("V-IO-09 a run that ends early leaves nothing behind") {
     });
     REQUIRE(WIFSIGNALED(status));
     CHECK_FALSE(fs::exists(scratch / "out"));
-    CHECK(scratch.entries() == 2);
+    CHECK(scratch.entries() == 4);
     { const OutputFolder folder(scratch / "out"); }
     CHECK(scratch.entries() == 0);
   }
@@ -258,21 +287,15 @@ TEST_CASE("V-IO-10 a result appears at once, and replaces an earlier one only wh
   }
   REQUIRE(holds_result(scratch / "out"));
   const int files = scratch.entries();
-  std::ofstream(scratch / "out/marker") << "earlier";
-
+  const Manifest earlier = manifest_of(scratch / "out");
   {
     const OutputFolder fails(scratch / "out");
     write_all(fails);
   }
-  CHECK(file_content(scratch / "out/marker") == "earlier");
-
-  {
-    OutputFolder folder(scratch / "out");
-    write_all(folder);
-    folder.commit();
-  }
-  CHECK_FALSE(fs::exists(scratch / "out/marker"));
+  CHECK(manifest_of(scratch / "out") == earlier);
+  put_result(scratch / "out");
   CHECK(scratch.entries() == files);
+  CHECK_FALSE(manifest_of(scratch / "out") == earlier);  // their times differ
 
   // An empty folder is as good as none.
   fs::create_directory(scratch / "empty");
@@ -295,16 +318,123 @@ TEST_CASE("V-IO-10 a result appears at once, and replaces an earlier one only wh
       message = error.what();
     }
   }
-  const fs::path kept = scratch / ("taken-" + std::to_string(getpid()));
+  const fs::path kept = scratch / "taken-1";
   check_contains(message, {"taken", kept.string()});
   CHECK(holds_result(kept));
   CHECK(file_content(scratch / "taken") == "mine");
 }
 
+TEST_CASE("V-IO-10 files of others stay, and one that was changed is not replaced") {
+  const ScratchFolder scratch;
+  const fs::path out = scratch / "out";
+  const auto put = [](const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  };
+  put_result(out);
+  put(out / "notes.txt", "mine");
+  put(out / "frames/notes.txt", "mine too");
+  put(out / "thesis/energy.csv", "and mine");
+  const Manifest earlier = manifest_of(out);
+  put_result(out);
+  CHECK(file_content(out / "notes.txt") == "mine");
+  CHECK(file_content(out / "frames/notes.txt") == "mine too");
+  CHECK(file_content(out / "thesis/energy.csv") == "and mine");
+  CHECK(holds_result(out));
+  CHECK(read_manifest(out)->size() == 7);  // two frames, three tables, .pvd, summary
+  CHECK_FALSE(manifest_of(out) == earlier);
+  put_result(out);  // again, with what the second has written
+  CHECK(file_content(out / "notes.txt") == "mine");
+
+  SUBCASE("frames of a longer run go, too") {
+    { std::ofstream(out / "frames/frame_0002.vtu") << "old"; }
+    Manifest manifest = *read_manifest(out);
+    for (const WrittenFile& file : manifest_of(out))
+      if (file.name == "frames/frame_0002.vtu") manifest.push_back(file);
+    write_manifest(out, manifest);
+    put_result(out);
+    CHECK_FALSE(fs::exists(out / "frames/frame_0002.vtu"));
+    CHECK(fs::exists(out / "frames/frame_0001.vtu"));
+  }
+  SUBCASE("a changed one") {
+    std::ofstream(out / "energy.csv", std::ios::app) << "1,2,3\n";
+    check_contains(refusal(out), {"energy.csv", "changed"});
+    CHECK(holds_result(out));
+  }
+  SUBCASE("one of others with the name of a result") {
+    put(out / "frames/frame_0005.vtu", "mine");
+    check_contains(refusal(out), {"frames/frame_0005.vtu"});
+  }
+  SUBCASE("a manifest that leads out of the folder") {
+    put(scratch / "victim", "mine");
+    Manifest manifest = *read_manifest(out);
+    for (const WrittenFile& file : manifest_of(scratch.path()))
+      if (file.name == "victim") manifest.push_back({"../victim", file.bytes, file.modified_ns});
+    write_manifest(out, manifest);
+    check_contains(refusal(out), {"manifest.json"});
+    CHECK(file_content(scratch / "victim") == "mine");
+  }
+  SUBCASE("changed while the run went on: both are kept") {
+    std::string message;
+    {
+      OutputFolder folder(out);
+      write_all(folder);
+      put(out / "energy.csv", "mine");
+      try {
+        folder.commit();
+      } catch (const std::runtime_error& error) {
+        message = error.what();
+      }
+    }
+    check_contains(message, {"energy.csv", (scratch / "out-1").string()});
+    CHECK(file_content(out / "energy.csv") == "mine");
+    CHECK(holds_result(scratch / "out-1"));
+  }
+}
+
+TEST_CASE(
+    "V-IO-09 of two runs into one target each has its own folder, and the dead one is swept") {
+  const ScratchFolder scratch;
+  const auto hidden = [&scratch] {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(scratch.path()))
+      count += entry.path().filename().string()[0] == '.' ? 1 : 0;
+    return count;
+  };
+  {
+    // In one process, so that host and process are the same, as they can be of two containers.
+    OutputFolder first(scratch / "out"), second(scratch / "out");
+    CHECK(first.path() != second.path());
+    CHECK(hidden() == 2);
+    write_all(first);
+    write_all(second);
+    first.commit();
+    second.commit();
+  }
+  CHECK(hidden() == 0);
+  CHECK(holds_result(scratch / "out"));
+
+  // Killed between the two renames of commit(): the earlier result comes back.
+  const std::string lost = (scratch / ".out.crossbeam-AbCdEf").string();
+  fs::create_directory(lost);
+  std::ofstream(lost + "/lock") << "";
+  fs::rename(scratch / "out", lost + "/earlier");
+  { const OutputFolder next(scratch / "out"); }
+  CHECK(holds_result(scratch / "out"));
+  CHECK(hidden() == 0);
+
+  // Killed after them: what is not as the program wrote it is nobody's to remove.
+  fs::create_directory(lost);
+  std::ofstream(lost + "/lock") << "";
+  fs::copy(scratch / "out", lost + "/earlier", fs::copy_options::recursive);
+  { const OutputFolder next(scratch / "out"); }
+  CHECK(fs::exists(lost + "/earlier/energy.csv"));  // a copy has another time
+}
+
 TEST_CASE("V-IO-11 a .vtu frame reads back bit for bit") {
   const ScratchFolder scratch;
   const DrapeResult result = small_result();
-  const Frame& frame = result.frames[1];
+  const Frame& frame = result.formed;
   write_vtu(scratch / "frame.vtu", result.quads, frame);
 
   const ReadVtu read(scratch / "frame.vtu");
@@ -352,7 +482,7 @@ TEST_CASE("V-IO-11 a .vtu frame reads back bit for bit") {
 
 TEST_CASE("V-IO-11 the .pvd lists every frame with its time") {
   const ScratchFolder scratch;
-  write_result(scratch.path(), some_case(), small_result(), references());
+  write_all(scratch.path());
   const std::string pvd = file_content(scratch / "drape.pvd");
   check_contains(pvd, {"type=\"Collection\"", "timestep=\"0\"", "timestep=\"1.5\"",
                        "file=\"frames/frame_0000.vtu\"", "file=\"frames/frame_0001.vtu\""});
@@ -362,7 +492,7 @@ TEST_CASE("V-IO-11 the .pvd lists every frame with its time") {
 TEST_CASE("V-IO-12 summary.json has the promised keys with the run's values") {
   const ScratchFolder scratch;
   const DrapeResult result = small_result();
-  write_result(scratch.path(), some_case(), result, references());
+  write_result(scratch.path(), some_case(), result, {}, references());
   const auto json = nlohmann::json::parse(file_content(scratch / "summary.json"));
 
   REQUIRE(json["shear_points"].size() == 10);
@@ -521,6 +651,16 @@ TEST_CASE("V-IO-15 progress is a bar on a terminal, a line at every tenth elsewh
   CHECK(Progress::line(Progress::Style::lines, 0.25, 12.5, 30) ==
         " 25 %   stroke  12.5 mm   left 1:30");
   CHECK(Progress::style_for(true) == Progress::Style::silent);
+
+  // A line as wide as the terminal wraps: there is always a column less.
+  for (int columns = 1; columns <= 200; ++columns)
+    for (const double done : {0.0, 0.25, 1.0})
+      CHECK(
+          static_cast<int>(Progress::line(Progress::Style::bar, done, 12.5, 30, columns).size()) <=
+          std::max(columns - 1, 1));
+  CHECK(Progress::line(Progress::Style::bar, 0.25, 12.5, 30, 20) == " 25 %  left 1:30");
+  check_contains(Progress::line(Progress::Style::bar, 0.25, 12.5, 30, 60),
+                 {"[####..............]  25 %   stroke  12.5 mm   left 1:30"});
 }
 
 TEST_SUITE_END();

@@ -22,6 +22,21 @@ using verify::claim;
 using Lanes = NativePack<double>;
 using Followed = WovenMembrane<CrossedBeamCell<double>, ConstantShear<double>, CellPrice::followed>;
 
+/// The same scheme without levels: every force of the step, then every node.
+class AtOnce final : public ForceBlock<double> {
+ public:
+  explicit AtOnce(std::unique_ptr<ForceBlock<double>> block) : block_(std::move(block)) {}
+  void add_forces(NodalState<double>& state, double dt) override { block_->add_forces(state, dt); }
+  void add_energy(const NodalState<double>& s, EnergyLedger& e) const override {
+    block_->add_energy(s, e);
+  }
+  [[nodiscard]] double omega_squared() const override { return block_->omega_squared(); }
+  [[nodiscard]] double damping_rate() const override { return block_->damping_rate(); }
+
+ private:
+  std::unique_ptr<ForceBlock<double>> block_;
+};
+
 /// A slender taut sheet pushed by a sphere: many levels, several bands, contact in some of them.
 struct Strip {
   double length;
@@ -43,8 +58,8 @@ struct Strip {
   }
 
   template <class Law>
-  [[nodiscard]] CentralDifference<Lanes> run(const Law& law, double viscosity = 0.06,
-                                             bool tools = true, double speed = 1) const {
+  [[nodiscard]] Model<double> model(const Law& law, double viscosity = 0.06, bool tools = true,
+                                    double speed = 1, bool at_once = false) const {
     std::vector<NodeConstraint> held;
     for (int n = 0; n < mesh.node_count; ++n) {
       const auto X = mesh.nodes.get(n);
@@ -57,11 +72,13 @@ struct Strip {
       state.v.set(
           n, {0, 0, speed * state.free.z[n] * std::sin(pi * X.x / 140) * std::sin(pi * X.y / 60)});
     }
-    CentralDifference<Lanes> out(std::move(state), areal_mass, 0.02);
-    out.add(std::make_unique<MembraneSweep<Lanes, Quadrilateral<1>, Law>>(
+    Model<double> out(std::move(state), 0.02);
+    const auto add = [&](std::unique_ptr<ForceBlock<double>> block) {
+      out.add(at_once ? std::make_unique<AtOnce>(std::move(block)) : std::move(block));
+    };
+    add(std::make_unique<MembraneSweep<Lanes, Quadrilateral<1>, Law>>(
         mesh, law, areal_mass, MembraneOptions{1e-4, viscosity}));
-    out.add(
-        std::make_unique<BendingSweep<Lanes>>(mesh, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
+    add(std::make_unique<BendingSweep<Lanes>>(mesh, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
     if (!tools) return out;
     for (const double x : {length / 4, length * 3 / 4})
       out.add(tool<Lanes>(Sphere<double>({x, 30, -60}, 60),
@@ -86,27 +103,27 @@ End with_works(const Run& run, End out) {
   return out;
 }
 
-template <class Run>
-End finish(Run run, int steps, int threads, double factor = 0.9) {
+End finish(Model<double> model, int steps, int threads, double factor = 0.9) {
+  CentralDifference<Lanes> run(std::move(model), TimeStep::fraction(factor));
   run.set_threads(threads);
-  run.start(factor * run.critical_step());
   EnergyLedger ledger;
   for (int k = 0; k < steps; ++k) run.step(k % 50 == 49 ? &ledger : nullptr);
   run.step(&ledger);
-  return with_works(run, {positions(run), ledger.internal.bulk_viscosity, 0, 0, ledger.kinetic});
+  return with_works(
+      run, {positions(run), ledger.value("bulk_viscosity"), 0, 0, ledger.value("kinetic")});
 }
 
 /// The same as `finish`, by `advance` from one sample to the next.
-template <class Run>
-End finish_in_flight(Run run, int steps) {
-  run.start(0.9 * run.critical_step());
+End finish_in_flight(Model<double> model, int steps) {
+  CentralDifference<Lanes> run(std::move(model), TimeStep::fraction(0.9));
   EnergyLedger ledger;
   for (int k = 0; k < steps; k += 50) {
     run.advance(std::min(49, steps - k));
     if (k + 50 <= steps) run.step(&ledger);
   }
   run.step(&ledger);
-  return with_works(run, {positions(run), ledger.internal.bulk_viscosity, 0, 0, ledger.kinetic});
+  return with_works(
+      run, {positions(run), ledger.value("bulk_viscosity"), 0, 0, ledger.value("kinetic")});
 }
 
 int different(const End& a, const End& b) {
@@ -117,21 +134,6 @@ int different(const End& a, const End& b) {
          (a.friction != b.friction) + (a.kinetic != b.kinetic) + !(a.visits == b.visits);
 }
 
-/// The same scheme without levels: every force of the step, then every node.
-class AtOnce final : public ForceBlock<double> {
- public:
-  explicit AtOnce(std::unique_ptr<ForceBlock<double>> block) : block_(std::move(block)) {}
-  void add_forces(NodalState<double>& state, double dt) override { block_->add_forces(state, dt); }
-  void add_energy(const NodalState<double>& s, InternalEnergy& e) const override {
-    block_->add_energy(s, e);
-  }
-  [[nodiscard]] double omega_squared() const override { return block_->omega_squared(); }
-  [[nodiscard]] double damping_rate() const override { return block_->damping_rate(); }
-
- private:
-  std::unique_ptr<ForceBlock<double>> block_;
-};
-
 }  // namespace
 
 TEST_SUITE_BEGIN("dynamics");
@@ -141,19 +143,19 @@ TEST_CASE("V-DYN-10 levels, bands and any number of threads give the same step")
   const auto law = fabric(pi / 2, 0.01);
   // Premise: there are bands to share, and more threads than one get some.
   {
-    auto run = strip.run(law);
-    REQUIRE(run.model().blocks[0]->bandwidth() < 64);
-    run.start(0.9 * run.critical_step());
+    Model<double> model = strip.model(law);
+    REQUIRE(model.blocks()[0]->bandwidth() < 64);
+    const CentralDifference<Lanes> run(std::move(model), TimeStep::fraction(0.9));
     REQUIRE(run.bands() >= 2);
   }
-  const End one = finish(strip.run(law), 400, 1);
+  const End one = finish(strip.model(law), 400, 1);
   REQUIRE(one.tool_work > 0);
   REQUIRE(one.friction > 0);
   REQUIRE(one.viscous > 0);
-  REQUIRE(different(one, finish(strip.run(law, 0.0600001), 400, 1)) > 0);  // can fail
+  REQUIRE(different(one, finish(strip.model(law, 0.0600001), 400, 1)) > 0);  // can fail
   for (const int threads : {2, 3, 4})
     claim(
-        "V-DYN-10", different(one, finish(strip.run(law), 400, threads)), 0,
+        "V-DYN-10", different(one, finish(strip.model(law), 400, threads)), 0,
         "nodes, works and visits that differ in any bit, " + std::to_string(threads) + " threads");
   // Two tools asked every pack of nodes in each of 401 steps.
   REQUIRE(one.visits.culled > 0);
@@ -163,10 +165,7 @@ TEST_CASE("V-DYN-10 levels, bands and any number of threads give the same step")
         "visits of tools that are not counted");
 
   // Against the whole step at once: the order of a node's sums differs where bands meet.
-  auto whole = strip.run(law);
-  auto& blocks = const_cast<std::vector<std::unique_ptr<ForceBlock<double>>>&>(whole.blocks());
-  for (auto& block : blocks) block = std::make_unique<AtOnce>(std::move(block));
-  const End at_once = finish(std::move(whole), 400, 1);
+  const End at_once = finish(strip.model(law, 0.06, true, 1, true), 400, 1);
   claim("V-DYN-10", distance(one.x, at_once.x), 1e-10,
         "positions against a step without levels [mm]: 400 steps of roundings of 1e-13");
   claim("V-DYN-10", std::abs(one.friction / at_once.friction - 1), 1e-8,
@@ -174,7 +173,7 @@ TEST_CASE("V-DYN-10 levels, bands and any number of threads give the same step")
 
   // Elements in any order: one level, gathered, the same motion.
   const Strip shuffled(true);
-  const End mixed = finish(shuffled.run(law), 400, 2);
+  const End mixed = finish(shuffled.model(law), 400, 2);
   claim("V-DYN-10", distance(one.x, mixed.x), 1e-10, "positions with shuffled elements [mm]");
 
   CHECK_THROWS_AS(ThreadTeam(0), InputError);
@@ -187,39 +186,40 @@ TEST_CASE("V-DYN-13 steps in flight together are the same steps") {
   const Followed followed(law.cell(), law.shear());
   // Premises: several are in flight, over seams, and something happens in them.
   {
-    auto run = strip.run(law);
-    run.start(0.9 * run.critical_step());
+    CentralDifference<Lanes> run(strip.model(law), TimeStep::fraction(0.9));
     REQUIRE(run.in_flight() > 1);
     REQUIRE(run.bands() > 2);
     run.set_threads(2);
     REQUIRE(run.in_flight() == 1);
   }
   const auto compare = [&](const auto& any_law, const char* what) {
-    const End one = finish(strip.run(any_law), 203, 1);
+    const End one = finish(strip.model(any_law), 203, 1);
     REQUIRE(one.tool_work > 0);
     REQUIRE(one.friction > 0);
     REQUIRE(one.viscous > 0);
     REQUIRE(one.visits.culled > 0);
-    REQUIRE(different(one, finish_in_flight(strip.run(any_law, 0.0600001), 203)) > 0);  // can fail
-    claim("V-DYN-13", different(one, finish_in_flight(strip.run(any_law), 203)), 0,
+    REQUIRE(different(one, finish_in_flight(strip.model(any_law, 0.0600001), 203)) >
+            0);  // can fail
+    claim("V-DYN-13", different(one, finish_in_flight(strip.model(any_law), 203)), 0,
           std::string("nodes, works and visits that differ in any bit, ") + what);
   };
   compare(law, "cells in equilibrium");
   compare(followed, "cells followed");
 
   // A free tool needs a step's forces before it moves: one at a time.
-  auto pressed = strip.run(law);
-  pressed.add(tool<Lanes>(Sphere<double>({strip.length / 2, 30, -60}, 60),
-                          ToolMotion::free_under([](double) { return 1e-3; }, 0.1, 0.1),
-                          ContactParameters{}, strip.mesh.node_count));
-  pressed.start(0.9 * pressed.critical_step());
+  Model<double> model = strip.model(law);
+  model.add(tool<Lanes>(Sphere<double>({strip.length / 2, 30, -60}, 60),
+                        ToolMotion::free_under([](double) { return 1e-3; }, 0.1, 0.1),
+                        ContactParameters{}, strip.mesh.node_count));
+  const CentralDifference<Lanes> pressed(std::move(model), TimeStep::fraction(0.9));
   CHECK(pressed.in_flight() == 1);
 
   // An unstable run is found at the step that it would be found at one by one.
   const auto stopped_at = [&](auto&& go) {
-    auto run = strip.run(law);
+    Model<double> too_fast = strip.model(law);
+    const double dt = 3 * too_fast.critical_step();
+    CentralDifference<Lanes> run(std::move(too_fast), TimeStep::fixed(dt));
     run.set_speed_limit(50);
-    run.start(3 * run.critical_step());
     run.step();
     try {
       go(run);
@@ -242,8 +242,8 @@ TEST_CASE("V-DYN-11 a run with followed cells is one with cells in equilibrium, 
   // The same step for both: what differs is the cell alone. No tools: first contact is a kink.
   const auto gap = [&](double factor) {
     const int steps = static_cast<int>(std::lround(60 / factor));
-    return distance(finish(strip.run(law, 0.06, false, 40), steps, 2, factor).x,
-                    finish(strip.run(followed, 0.06, false, 40), steps, 2, factor).x);
+    return distance(finish(strip.model(law, 0.06, false, 40), steps, 2, factor).x,
+                    finish(strip.model(followed, 0.06, false, 40), steps, 2, factor).x);
   };
   const double coarse = gap(0.8), fine = gap(0.2);
   REQUIRE(coarse > 1e-11);  // above rounding
@@ -253,10 +253,7 @@ TEST_CASE("V-DYN-11 a run with followed cells is one with cells in equilibrium, 
         "gap at 0.8 of the critical step [mm], of a motion of millimetres");
 
   // Methods that evaluate a state more than once have no last step to follow from.
-  auto run = strip.run(followed);
-  Model<double> model(run.model().state, areal_mass);
-  model.add(std::make_unique<MembraneSweep<Lanes, Quadrilateral<1>, Followed>>(
-      strip.mesh, followed, areal_mass, MembraneOptions{}));
+  const Model<double> model = strip.model(followed);
   CHECK_THROWS_WITH_AS(model.require_no_memory(), doctest::Contains("followed from step to step"),
                        InputError);
 }

@@ -42,15 +42,15 @@ struct SphereDrape {
           state.x.set(k, state.x.get(k) + vec3(random.vector(perturbation)));
         }
     }
-    CentralDifference<T> run(std::move(state), areal_mass, 1);
-    run.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
+    Model<real_t<T>> model(std::move(state), 1);
+    model.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
         mesh, law, areal_mass, MembraneOptions{1e-4, 0.06}));
     if (bending > 0)
-      run.add(
+      model.add(
           std::make_unique<BendingSweep<T>>(mesh, BendingStiffness{bending, bending}, areal_mass));
-    run.add(tool<T>(Sphere<double>({side / 2, side / 2, -radius}, radius),
-                    ToolMotion::prescribed(travel), ContactParameters{}, mesh.node_count));
-    run.start(0.9 * run.critical_step());
+    model.add(tool<T>(Sphere<double>({side / 2, side / 2, -radius}, radius),
+                      ToolMotion::prescribed(travel), ContactParameters{}, mesh.node_count));
+    CentralDifference<T> run(std::move(model), TimeStep::fraction(0.9));
     std::vector<Points> out;
     while (static_cast<int>(out.size()) <= rows)
       if (travel(run.time()) >= stroke * static_cast<double>(out.size()) / rows)

@@ -13,8 +13,7 @@ namespace scenes {
 
 using namespace patches;
 
-/// The same force per mass on every node [mm/ms^2]. Its potential counts as yarn energy, so that
-/// the ledger knows it.
+/// The same force per mass on every node [mm/ms^2].
 template <class R = double>
 class Gravity final : public ForceBlock<R> {
  public:
@@ -25,12 +24,14 @@ class Gravity final : public ForceBlock<R> {
       state.f.set(n, state.f.get(n) + m * Vec3<R>{R(g_.x()), R(g_.y()), R(g_.z())});
     }
   }
-  void add_energy(const NodalState<R>& state, InternalEnergy& e) const override {
+  void add_energy(const NodalState<R>& state, EnergyLedger& e) const override {
+    double potential = 0;
     for (int n = 0; n < state.node_count; ++n) {
       const auto x = state.x.get(n);
-      e.yarn -= double(state.mass[n]) *
-                (g_.x() * double(x.x) + g_.y() * double(x.y) + g_.z() * double(x.z));
+      potential -= double(state.mass[n]) *
+                   (g_.x() * double(x.x) + g_.y() * double(x.y) + g_.z() * double(x.z));
     }
+    e.add("gravity", EnergyKind::stored, potential);
   }
   [[nodiscard]] double omega_squared() const override { return 0; }
 
@@ -48,7 +49,7 @@ class Pull final : public ForceBlock<double> {
     for (int n : nodes_) state.f.set(n, state.f.get(n) + vec3(f));
     time_ += dt;
   }
-  void add_energy(const NodalState<double>&, InternalEnergy&) const override {}
+  void add_energy(const NodalState<double>&, EnergyLedger&) const override {}
   [[nodiscard]] double omega_squared() const override { return 0; }
 
  private:
@@ -98,9 +99,9 @@ struct TautSheet {
   }
 
   template <class T = Lane>
-  [[nodiscard]] CentralDifference<T> run(double mass_damping = 0, double bulk_viscosity = 0,
-                                         double bending = 1.4e-3) const {
-    CentralDifference<T> out(state(), areal_mass, mass_damping);
+  [[nodiscard]] Model<double> model(double mass_damping = 0, double bulk_viscosity = 0,
+                                    double bending = 1.4e-3) const {
+    Model<double> out(state(), mass_damping);
     out.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
         mesh, law, areal_mass, MembraneOptions{1e-4, bulk_viscosity}));
     if (bending > 0)

@@ -63,7 +63,7 @@ using Woven = WovenMembrane<Cell, Shear>;
 inline Woven<ConstantShear<double>> fabric(double fibre_angle, double shear_modulus = 0.02,
                                            const CellParameters<double>& cell = {}) {
   const FibreAngle<double> angle(fibre_angle);
-  return {Cell(cell), ConstantShear<double>(shear_modulus, angle), angle};
+  return {Cell(cell), ConstantShear<double>(shear_modulus), angle};
 }
 
 inline bool is_rotation(const Eigen::Matrix3d& Q) {

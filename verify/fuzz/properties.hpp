@@ -335,15 +335,14 @@ inline Outcome check_law(std::span<const std::uint8_t> data) {
     if (kind == 0) return check(NoShear<double>{});
     if (kind <= 2)
       return check(ConstantShear<double>(
-          bytes.like(1e-3), angle,
-          bytes.below(2) == 0 ? ShearMeasure::tensor : ShearMeasure::engineering,
+          bytes.like(1e-3), bytes.below(2) == 0 ? ShearMeasure::tensor : ShearMeasure::engineering,
           kind == 1 ? ShearFrame::cartesian : ShearFrame::fibre));
     std::vector<double> first, second;
     if (kind == 3) {
       const int terms = bytes.below(10);
       for (int k = 0; k < terms; ++k)
         first.push_back(bytes.below(4) == 0 ? bytes.any() : bytes.uniform(-1e-3, 9e-3));
-      return check(PolynomialShear<double>(PolynomialCurve<double>(first), angle), false);
+      return check(PolynomialShear<double>(PolynomialCurve<double>(first)), false);
     }
     const int points = bytes.below(6);
     double angle_sum = 0, traction_sum = 0;
@@ -353,7 +352,7 @@ inline Outcome check_law(std::span<const std::uint8_t> data) {
       angle_sum += bytes.below(8) == 0 ? bytes.any() : bytes.uniform(0.01, 0.5);
       traction_sum += bytes.below(8) == 0 ? bytes.any() : bytes.uniform(0, 1e-4);
     }
-    return check(TabulatedShear<double>(TabulatedCurve<double>(first, second), angle));
+    return check(TabulatedShear<double>(TabulatedCurve<double>(first, second)));
   } catch (const InputError&) {
     return Outcome::refused;
   }

@@ -1,5 +1,5 @@
-// libFuzzer target: scene_properties.hpp. A broken promise ends the program, and libFuzzer keeps the
-// text.
+// libFuzzer target: scene_properties.hpp. A broken promise ends the program, and libFuzzer keeps
+// the text.
 
 #include "fuzz/scene_properties.hpp"
 

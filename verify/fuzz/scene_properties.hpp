@@ -65,7 +65,7 @@ void build(const crossbeam::drape::FabricInput& fabric) {
   static_cast<void>(SecondOrderCell<R>(fabric.cell.cast<R>()));
   const auto& shear = fabric.shear;
   if (shear.kind == ShearLawKind::constant)
-    static_cast<void>(ConstantShear<R>(R(shear.modulus), FibreAngle<R>::right(), shear.measure));
+    static_cast<void>(ConstantShear<R>(R(shear.modulus), shear.measure));
   if (shear.kind == ShearLawKind::polynomial)
     static_cast<void>(PolynomialCurve<R>(real(shear.coefficients)));
   if (shear.kind == ShearLawKind::tabulated)

@@ -8,6 +8,7 @@
 #include "support/random.hpp"
 #include "support/reference_states.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <doctest/doctest.h>
 

@@ -127,8 +127,8 @@ TEST_CASE("V-KIN-04 the shear angle is signed, blind to stretch and turn, and ex
   // Slope of the arcsine <= 1/sin(15 deg) = 4 times some ten roundings of numbers near one.
   error.claim("V-KIN-04", 2e-14, "shear angle against the angle that was drawn [rad]");
 
-  // Small shear of perpendicular yarns: the sine form keeps relative digits down to any angle, where
-  // the arc cosine would answer 0 below 1e-8.
+  // Small shear of perpendicular yarns: the sine form keeps relative digits down to any angle,
+  // where the arc cosine would answer 0 below 1e-8.
   verify::Worst small;
   const auto right = crossbeam::FibreAngle<double>::right();
   const auto right_float = crossbeam::FibreAngle<float>::right();
@@ -161,7 +161,7 @@ TEST_CASE("V-KIN-07 the arcsine polynomial is good to 2.5 ulps and the same in e
   below.claim("V-KIN-07", 0.75, "ulps, |x| <= 1/2, float and double");
   above.claim("V-KIN-07", 2.5, "ulps, |x| > 1/2, float and double");
   seam.claim("V-KIN-07", 2.5, "ulps, the 64 neighbours of 1/2 on either side");
-  // Roundings of the stored pi/2 and of the sum, and the root's own through the slope of the octant.
+  // Roundings of the stored pi/2, of the sum, and of the root through the slope of the octant.
   octant.claim("V-KIN-07", 2, "roundings of one, with the cosine of the answer given");
   // Bit for bit: both run the same correctly rounded operations in the same order.
   lanes.claim("V-KIN-07", 0, "lanes that differ from the scalar");

@@ -6,6 +6,8 @@
 #include "law/laws.hpp"
 #include "support/claim.hpp"
 
+#include <Eigen/Geometry>
+
 #include <doctest/doctest.h>
 
 namespace {

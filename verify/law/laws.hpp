@@ -25,7 +25,8 @@ crossbeam::FibreAngle<R> fibre_angle(int degrees) {
                        : crossbeam::FibreAngle<R>(radians<R>(degrees));
 }
 
-/// Tangent modulus of the fabric of the double dome, G = sum a_k |gamma|^k: two published fits in MPa.
+/// Tangent modulus of the fabric of the double dome, G = sum a_k |gamma|^k: two published fits in
+/// MPa.
 inline const std::vector<double> law_A{0.051, -0.83, 6.1275, -12.0972, 8.48};
 inline const std::vector<double> law_B{0.1948, -1.5928, 6.3822, -9.8228, 6.7135};
 
@@ -34,15 +35,17 @@ crossbeam::PolynomialShear<R> polynomial_shear(const std::vector<double>& in_MPa
                                                const crossbeam::FibreAngle<R>& reference) {
   std::vector<R> coefficients;
   for (const double a : in_MPa) coefficients.push_back(R(a) / 1000);  // kN/mm^2
-  return {crossbeam::PolynomialCurve<R>(coefficients), reference};
+  return crossbeam::between_yarns(
+      crossbeam::PolynomialShear<R>(crossbeam::PolynomialCurve<R>(coefficients)), reference);
 }
 
 /// A locking curve of three straight lines; its knots are kinks of the tangent.
 inline const std::vector<double> knots{0, 0.35, 0.7};
 template <class R>
 crossbeam::TabulatedShear<R> tabulated_shear(const crossbeam::FibreAngle<R>& reference) {
-  return {crossbeam::TabulatedCurve<R>({R(0), R(0.35), R(0.7)}, {R(0), R(2e-5), R(9e-5)}),
-          reference};
+  return crossbeam::between_yarns(crossbeam::TabulatedShear<R>(crossbeam::TabulatedCurve<R>(
+                                      {R(0), R(0.35), R(0.7)}, {R(0), R(2e-5), R(9e-5)})),
+                                  reference);
 }
 
 /// Calls visit(name, shear) for every shear layer of the library.
@@ -56,7 +59,7 @@ void for_each_shear(int degrees, Visit visit) {
       visit(std::string("constant, ") +
                 (measure == ShearMeasure::tensor ? "tensor, " : "engineering, ") +
                 (frame == ShearFrame::cartesian ? "Cartesian" : "fibre"),
-            ConstantShear<R>(R(0.001), angle, measure, frame));
+            between_yarns(ConstantShear<R>(R(0.001), measure, frame), angle));
   visit("polynomial A", polynomial_shear<R>(law_A, angle));
   visit("polynomial B", polynomial_shear<R>(law_B, angle));
   visit("tabulated", tabulated_shear<R>(angle));

@@ -1,11 +1,13 @@
-// Stress, tangent and energy of the woven membrane against the reference table, and the places where
-// the paper's printed equations fail.
+// Stress, tangent and energy of the woven membrane against the reference table, and the places
+// where the paper's printed equations fail.
 
 #include "crossbeam/law/woven_membrane.hpp"
 
 #include "law/laws.hpp"
 #include "support/claim.hpp"
 #include "support/reference_states.hpp"
+
+#include <Eigen/Geometry>
 
 #include <doctest/doctest.h>
 
@@ -35,7 +37,7 @@ Membrane membrane_of(const Json& state, double G12,
                      crossbeam::YarnWidth width = crossbeam::YarnWidth::corrected) {
   const auto angle = angle_of(state);
   return {crossbeam::CrossedBeamCell<double>(verify::reference_parameters<double>(state)),
-          crossbeam::ConstantShear<double>(G12, angle), angle, width};
+          crossbeam::ConstantShear<double>(G12), angle, width};
 }
 
 }  // namespace

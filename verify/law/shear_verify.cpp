@@ -34,7 +34,8 @@ FibreState<double> pure_shear(double gamma, int degrees) {
   return fibre_state(0.0, 0.0, 0.5 * (std::cos(delta - gamma) - std::cos(delta)));
 }
 
-/// The traction conjugate to gamma in pure shear, from the law's gradient: dW/dbeta12 dbeta12/dgamma.
+/// The traction conjugate to gamma in pure shear, from the law's gradient: dW/dbeta12
+/// dbeta12/dgamma.
 template <class Shear>
 double traction(const Shear& shear, double gamma, int degrees) {
   const double delta = verify::radians<double>(degrees);
@@ -133,7 +134,7 @@ TEST_CASE(
       const double g = k / 4000.0, h = 1e-5;
       largest = std::max(largest, (curve.traction(g + h) - curve.traction(g - h)) / (2 * h));
     }
-    const crossbeam::PolynomialShear<double> shear(curve, right);
+    const crossbeam::PolynomialShear<double> shear(curve);
     bounds.see(std::abs(shear.modulus_bound() / largest - 1), "polynomial of", a.size(), "terms");
   }
   bounds.see(std::abs(verify::tabulated_shear<double>(right).modulus_bound() / 2e-4 - 1), "table");
@@ -141,8 +142,9 @@ TEST_CASE(
   for (const int degrees : {60, 90, 120})
     for (const auto frame : {crossbeam::ShearFrame::cartesian, crossbeam::ShearFrame::fibre}) {
       const double sine = std::sin(verify::radians<double>(degrees));
-      const crossbeam::ConstantShear<double> shear(0.003, verify::fibre_angle<double>(degrees),
-                                                   crossbeam::ShearMeasure::tensor, frame);
+      const auto shear = crossbeam::between_yarns(
+          crossbeam::ConstantShear<double>(0.003, crossbeam::ShearMeasure::tensor, frame),
+          verify::fibre_angle<double>(degrees));
       const double b = frame == crossbeam::ShearFrame::cartesian ? 1 / sine : 1;
       bounds.see(std::abs(shear.modulus_bound() / (0.003 * b * b) - 1), "constant", degrees);
       // And the law: the yarns' bound plus four shear moduli, [C-10].
@@ -199,7 +201,7 @@ TEST_CASE("V-LAW-12 shear input that is no elastic law is refused by name") {
   using Table = crossbeam::TabulatedCurve<double>;
   using List = std::vector<double>;
   for (const double modulus : {-1e-3, nan, inf})
-    must_refuse("shear.modulus", [&] { crossbeam::ConstantShear<double>(modulus, angle); });
+    must_refuse("shear.modulus", [&] { crossbeam::ConstantShear<double>{modulus}; });
   // A modulus that is negative somewhere below 1.2 rad: at zero, in the middle, at the end.
   // The last two are negative at zero alone, and beyond 1.195 rad alone.
   for (const List& a :
@@ -224,7 +226,7 @@ TEST_CASE("V-LAW-12 shear input that is no elastic law is refused by name") {
   must_refuse("shear.angle[1]", [&] { Table({0, 0.99 * least_step}, {0, 1}); });
   CHECK_NOTHROW(Table({0, 1.01 * least_step}, {0, 1}));
   // The published laws and the edges of the ranges are accepted.
-  CHECK_NOTHROW(crossbeam::ConstantShear<double>(0.0, angle));
+  CHECK_NOTHROW(crossbeam::ConstantShear<double>(0.0));
   CHECK_NOTHROW(verify::polynomial_shear<double>(verify::law_A, angle));
   CHECK_NOTHROW(verify::polynomial_shear<double>(verify::law_B, angle));
   CHECK_NOTHROW(Polynomial(List{0}));
@@ -285,17 +287,17 @@ TEST_CASE(
   for (const int degrees : {60, 90, 120}) {
     const auto angle = verify::fibre_angle<double>(degrees);
     const auto [s, E12] = at(degrees);
-    const ConstantShear<double> paper(G, angle);
-    const ConstantShear<double> engineering(G, angle, ShearMeasure::engineering);
+    const auto paper = between_yarns(ConstantShear<double>(G), angle);
+    const auto engineering =
+        between_yarns(ConstantShear<double>(G, ShearMeasure::engineering), angle);
     factor.see(std::abs(engineering.energy(s) / paper.energy(s) - 2), degrees);
     // Eq. 26 literally: S12 = G12 E12 with the tensor component, so W = G12 E12^2 (E12 and E21).
     tensor.see(std::abs(paper.strain(s.beta) / E12 - 1), degrees);
     tensor.see(std::abs(paper.energy(s) / (G * E12 * E12) - 1), degrees);
   }
   const auto [right, E12] = at(90);
-  const ConstantShear<double> a(G, FibreAngle<double>::right());
-  const ConstantShear<double> b(G, FibreAngle<double>::right(), ShearMeasure::tensor,
-                                ShearFrame::fibre);
+  const ConstantShear<double> a(G);
+  const ConstantShear<double> b(G, ShearMeasure::tensor, ShearFrame::fibre);
   frames.see(std::abs(a.energy(right) - b.energy(right)) / a.energy(right));
   factor.claim("V-LAW-15", 1e-15, "energy of the engineering measure over the tensor's, less 2");
   // beta12 is a difference of terms of order one times 0.1.
@@ -306,8 +308,9 @@ TEST_CASE(
   // so the paper's layer answers to a stretch with shear stress.
   const auto angle = verify::fibre_angle<double>(60);
   const auto stretched = fibre_state(0.01, 0.0, 0.0);
-  const ConstantShear<double> cartesian(G, angle);
-  const ConstantShear<double> fibre(G, angle, ShearMeasure::tensor, ShearFrame::fibre);
+  const auto cartesian = between_yarns(ConstantShear<double>(G), angle);
+  const auto fibre =
+      between_yarns(ConstantShear<double>(G, ShearMeasure::tensor, ShearFrame::fibre), angle);
   CHECK(fibre.energy(stretched) == 0);
   verify::claim("V-LAW-15", std::abs(cartesian.gradient(stretched).g3) / (G * 0.01), 0.5,
                 "spurious shear of a warp stretch at 60 deg, Cartesian frame",

@@ -260,7 +260,8 @@ TEST_CASE(
   const Mesh<4> strip = mesh_in_disorder<4>(grid(40, 60, 3, 0.2, random), cells<4>(40, 60), random);
   const auto [mixed, all] = gathered(strip);
   REQUIRE(mixed > 0.99 * all);
-  // 60 rows of 40 elements with a lane left out between two: 2459 lanes, the last three by themselves.
+  // 60 rows of 40 elements with a lane left out between two: 2459 lanes, the last three by
+  // themselves.
   verify::claim("V-MESH-03", gathered(renumbered(strip, number_by_levels(strip))).first, 1,
                 "gathered batches of a shuffled strip, numbered: the rest at its end");
 }
@@ -320,9 +321,9 @@ TEST_CASE("V-MESH-04 membrane forces on the new numbers, carried back, are those
   widths.template operator()<Triangle>(scenes<3>(random));
   widths.template operator()<Quadrilateral<1>>(scenes<4>(random));
   widths.template operator()<Quadrilateral<4>>(scenes<4>(random));
-  // Coordinates and fibres are equal in every bit; only the order differs in which elements add to a
-  // node: 50 at the hub of the fan, each sum rounded to half of 2.2e-16 of what it has reached. The
-  // cell's slowest lane may bring another lane one sweep more, as in V-ELEM-06.
+  // Coordinates and fibres are equal in every bit; only the order differs in which elements add to
+  // a node: 50 at the hub of the fan, each sum rounded to half of 2.2e-16 of what it has reached.
+  // The cell's slowest lane may bring another lane one sweep more, as in V-ELEM-06.
   force.claim("V-MESH-04", 1e-14, "nodal forces, over the largest");
   mass.claim("V-MESH-04", 1e-14, "nodal masses, relative");
 }

@@ -1,8 +1,8 @@
 # Compiles a program and runs it:
 #   cmake "-DCOMPILE=<command>" "-DOUTPUT=<program>" "-DRUN=<command>|no" ["-DREFUSED=<regex>"]
-#     -P compile_and_run.cmake
+#     ["-DMUST_FAIL=<regex>"] -P compile_and_run.cmake
 # COMPILE and RUN are lists; COMPILE is followed by -o OUTPUT. What the compiler says must not match
-# REFUSED. A program that returns 77 cannot run here: the line
+# REFUSED. With MUST_FAIL it must not compile, and the first error must match. A program that returns 77 cannot run here: the line
 # "portability: skipped" tells ctest.
 cmake_minimum_required(VERSION 3.24)
 
@@ -14,6 +14,13 @@ string(TIMESTAMP end "%s")
 math(EXPR seconds "${end} - ${begin}")
 list(JOIN COMPILE " " command)
 message(STATUS "${command}\n${text}\ncompiled in ${seconds} s")
+if(MUST_FAIL)
+  string(REGEX MATCH "error:[^\n]*" first "${text}")
+  if(status EQUAL 0 OR NOT first MATCHES "${MUST_FAIL}")
+    message(FATAL_ERROR "the first error is not one that matches ${MUST_FAIL}: ${first}")
+  endif()
+  return()
+endif()
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "does not compile: ${status}")
 endif()

@@ -2,7 +2,8 @@
 
   report.py --log measured.jsonl --out FOLDER
             [--claims verify/README.md] [--junit tests.xml] [--tests tests.json]
-            [--mutation mutation.json] [--build build.json] [--title TEXT] [--repeat COMMAND]
+            [--mutation mutation.json] [--parts parts.json] [--build build.json]
+            [--title TEXT] [--repeat COMMAND]
 
 The log is what crossbeam/verification/evidence.hpp writes. It may hold claims of its own and say
 what is verified, any further fields of the subject being shown as they are:
@@ -14,7 +15,9 @@ Claims come from the table, from the log or from both. A claim of the table hold
 its ID, all of them passed and all its comparisons are within their bounds; one of the log when it
 was compared at all and all comparisons are within their bounds.
 
-Exit status: 0 all claims hold, 1 some do not, 2 there is no report.
+Exit status: 0 the page is green, 1 it is red (a claim, another test or a part of the run failed), 2
+there is no report. A test that was skipped here, say for want of a processor that can run it, has not
+failed; the page's first line says what the run left out.
 Needs Jinja2 and matplotlib (Debian: python3-jinja2 python3-matplotlib).
 """
 
@@ -68,7 +71,8 @@ class Claim:
     @property
     def faults(self):
         """Why it does not hold; empty if it does."""
-        out = [f"test {t['status']}: {t['name']}" for t in self.tests if t["status"] != "passed"]
+        out = [f"test {t['status']}: {t['name']}" for t in self.tests
+               if t["status"] in ("failed", "not run")]
         out += [f"{c['note']}: {plain(c['measured'])} is not {sign(c)} {plain(c['tolerance'])}"
                 for c in self.comparisons if not c["pass"]]
         if self.tested and not self.tests and not self.left_out:
@@ -81,7 +85,8 @@ class Claim:
     def verdict(self):
         if self.faults:
             return "does not hold"
-        return "holds" if self.tests or self.comparisons else "not run"
+        ran = [t for t in self.tests if t["status"] != "skipped"]
+        return "holds" if ran or self.comparisons else "not run"
 
     @property
     def tightest(self):
@@ -211,23 +216,29 @@ def read_table(file):
     return claims
 
 
+def status_of(case):
+    """passed, failed, skipped, or not run where a test should have run and could not."""
+    if case.find("failure") is not None or case.find("error") is not None:
+        return "failed"
+    # CTest writes the status; others mark what did not pass by an element.
+    skipped, status = case.find("skipped"), case.get("status")
+    if status == "fail":
+        return "failed"
+    if status in ("run", None):
+        return "passed" if skipped is None else "skipped"
+    # CTest says "notrun" of a test that skipped itself as of one without a program to run.
+    itself = skipped is not None and skipped.get("message", "").startswith("SKIP_")
+    return "skipped" if itself or status == "disabled" else "not run"
+
+
 def read_junit(file):
     """All tests, and how long they took together [s]."""
     try:
         root = xml.etree.ElementTree.fromstring(read_text(file))
     except xml.etree.ElementTree.ParseError as error:
         raise BadInput(f"{file}: no JUnit XML: {error}") from error
-    tests = []
-    for case in root.iter("testcase"):
-        # CTest writes the status; others mark what did not pass by an element.
-        status = {"run": "passed", None: "passed", "fail": "failed"}.get(case.get("status"),
-                                                                        "not run")
-        if case.find("failure") is not None or case.find("error") is not None:
-            status = "failed"
-        elif case.find("skipped") is not None and status == "passed":
-            status = "not run"
-        tests.append({"name": case.get("name", ""), "status": status,
-                      "seconds": float(case.get("time") or 0)})
+    tests = [{"name": case.get("name", ""), "status": status_of(case),
+              "seconds": float(case.get("time") or 0)} for case in root.iter("testcase")]
     return tests, float(root.get("time") or 0)
 
 
@@ -235,7 +246,17 @@ def read_mutation(file):
     mutation = read_json(file)
     if not isinstance(mutation, dict) or not isinstance(mutation.get("score"), (int, float)):
         raise BadInput(f"{file}: no score")
-    return mutation
+    return {"recorded": False, "date": "unknown", "commit": "unknown", "changed": [], **mutation}
+
+
+def read_parts(file):
+    """Parts of the run beside the tests: [{"name", "status": passed|failed|left out, "note"}]."""
+    parts = read_json(file)
+    for part in parts if isinstance(parts, list) else [None]:
+        if not isinstance(part, dict) or not isinstance(part.get("name"), str) or part.get(
+                "status") not in ("passed", "failed", "left out"):
+            raise BadInput(f"{file}: {part!r} is no part of a run")
+    return parts
 
 
 # --------------------------------------------------------------------------------------------------
@@ -265,7 +286,8 @@ def natural(text):
 
 
 def gather(options):
-    """All claims by ID, the subjects and the tests of no claim."""
+    """All claims by ID, the subjects, the tests of no claim, the seconds of all tests, and the
+    names of the tests that were left out or skipped."""
     claims = read_table(options.claims) if options.claims else {}
     tests, seconds = read_junit(options.junit) if options.junit else ([], None)
     for claim in claims.values():
@@ -309,12 +331,12 @@ def gather(options):
             claims[i].tests.append(test)
         if not ids:
             others.append(test)
-    if options.tests:
-        ran = {test["name"] for test in tests}
-        for test in read_json(options.tests).get("tests", []):
-            for i in ID.findall(test.get("name", "")):
-                if i in claims and test["name"] not in ran:
-                    claims[i].left_out += 1
+    ran = {test["name"] for test in tests}
+    every = read_json(options.tests).get("tests", []) if options.tests else []
+    left_out = [test["name"] for test in every if test.get("name", "") not in ran]
+    for i in (i for name in left_out for i in ID.findall(name) if i in claims):
+        claims[i].left_out += 1
+    skipped = [test["name"] for test in tests if test["status"] == "skipped"]
 
     # Tests run side by side: the order of the log's lines means nothing.
     for claim in claims.values():
@@ -322,7 +344,7 @@ def gather(options):
         claim.pictures.sort(key=lambda p: (natural(p["title"]), json.dumps(p)))
         claim.tests.sort(key=lambda t: natural(t["name"]))
     subjects.sort(key=lambda s: natural(s["name"]))
-    return claims, subjects, others, seconds
+    return claims, subjects, others, seconds, left_out, skipped
 
 
 def processor():
@@ -362,6 +384,19 @@ def summary_of(claims):
             "comparisons": sum(len(claim.comparisons) for claim in claims)}
 
 
+def count(number, noun):
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def what_was_left_out(left_out, skipped, parts):
+    """One line, empty where the run had everything."""
+    out = [count(len(left_out), "long test")] if left_out else []
+    out += [part["name"] for part in parts if part["status"] == "left out"]
+    if skipped:
+        out.append(count(len(skipped), "test") + " skipped here: " + ", ".join(skipped))
+    return ("left out of this run: " + ", ".join(out)) if out else ""
+
+
 def areas_of(claims):
     """(name, claims) in the order of the table or, where there is none, of the IDs."""
     areas = {}
@@ -394,12 +429,13 @@ def row_of(claim):
 
 def document(options):
     """Everything the page needs; the part that goes to report.json is under "json"."""
-    claims, subjects, others, seconds = gather(options)
+    claims, subjects, others, seconds, left_out, skipped = gather(options)
     claims = list(claims.values())
     if not options.claims:
         claims.sort(key=lambda c: natural(c.id))
     build = read_json(options.build) if options.build else {}
     mutation = read_mutation(options.mutation) if options.mutation else None
+    parts = read_parts(options.parts) if options.parts else []
     title = options.title or (
         "Verification of " + " and ".join(s["name"] for s in subjects) if subjects
         else "Verification of crossbeam")
@@ -416,9 +452,15 @@ def document(options):
         "seconds": seconds,
         "subjects": subjects,
         "mutation": mutation or {"score": None},
-        "other_tests": {"run": len(others),
-                        "failed": [t["name"] for t in others if t["status"] != "passed"]},
+        "other_tests": {"run": sum(t["status"] in ("passed", "failed") for t in others),
+                        "failed": [t["name"] for t in others
+                                   if t["status"] in ("failed", "not run")]},
+        "parts": parts,
+        "left_out": what_was_left_out(left_out, skipped, parts),
     }
+    # The one verdict: headline and exit status both say this.
+    facts["good"] = not (facts["summary"]["not_held"] or facts["other_tests"]["failed"]
+                         or any(part["status"] == "failed" for part in parts))
     return {"json": {**facts, "claims": [row_of(claim) for claim in claims]}, "claims": claims,
             **facts}
 
@@ -514,13 +556,20 @@ def report(options):
         raise BadInput(f"cannot write to {folder}: {error}") from error
 
     counts = facts["summary"]
+    if facts["left_out"]:
+        print(facts["left_out"][0].upper() + facts["left_out"][1:])
+    for name in facts["other_tests"]["failed"]:
+        print(f"FAILED {name}")
+    for part in facts["parts"]:
+        if part["status"] == "failed":
+            print(f"FAILED {part['name']}")
     for claim in facts["claims"]:
         for fault in claim.faults:
             print(f"NOT HELD {claim.id}: {fault}")
     left = f", {counts['not_run']} not run" if counts["not_run"] else ""
     print(f"{counts['held']} of {counts['claims']} claims hold{left}; {counts['comparisons']} "
           f"comparisons; report.html and report.json in {folder}")
-    return 1 if counts["not_held"] else 0
+    return 0 if facts["good"] else 1
 
 
 def main(arguments=None):
@@ -533,7 +582,9 @@ def main(arguments=None):
     add("--junit", metavar="FILE", help="JUnit XML of the tests that ran")
     add("--tests", metavar="FILE", help="all tests, as by ctest --show-only=json-v1: tells claims "
         "that were left out from claims without a test")
-    add("--mutation", metavar="FILE", help="result of the mutation run, JSON")
+    add("--mutation", metavar="FILE", help="result of a mutation run, or the record of one, JSON")
+    add("--parts", metavar="FILE", help="parts of the run beside the tests, and what became of each, "
+        "JSON")
     add("--build", metavar="FILE", help="compiler, flags and versions, JSON")
     add("--title", metavar="TEXT", help="headline of the page")
     add("--repeat", metavar="COMMAND", help="what repeats one claim; {id} stands for its ID")

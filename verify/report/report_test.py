@@ -4,6 +4,8 @@ import contextlib
 import io
 import json
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -157,7 +159,8 @@ class ReportTest(unittest.TestCase):
         self.assertFalse(self.claim["V-ONE-02"]["pass"])
 
     def test_failed_test_without_a_claim(self):
-        self.assertEqual(self.run_suite(HEALTHY, {**TESTS, "packs add": "fail"}), 0)
+        self.assertEqual(self.run_suite(HEALTHY, {**TESTS, "packs add": "fail"}), 1)
+        self.assertIn("FAILED packs add", self.said)
         self.assertEqual(self.json["other_tests"]["failed"], ["packs add"])
         self.assertIn('class="verdict broken"', self.html)
 
@@ -175,6 +178,56 @@ class ReportTest(unittest.TestCase):
         self.assertIsNone(self.claim["V-TWO-01"]["pass"])
         self.assertEqual(self.json["summary"]["not_run"], 1)
         self.assertIn("1 not run", self.said)
+        self.assertEqual(self.json["left_out"], "left out of this run: 1 long test")
+        self.assertIn("3 claims hold<span class=\"left\">; left out of this run: 1 long", self.html)
+
+    def test_parts_of_the_run(self):
+        parts = [{"name": "fuzzing", "status": "passed", "note": ""},
+                 {"name": "mutation run", "status": "left out", "note": "the record is shown"}]
+        self.assertEqual(
+            self.run_suite(HEALTHY, None, "--parts", self.file("parts.json", parts)), 0)
+        self.assertIn("left out of this run: mutation run", self.html)
+        parts[0]["status"] = "failed"
+        self.assertEqual(
+            self.run_suite(HEALTHY, None, "--parts", self.file("parts.json", parts)), 1)
+        self.assertIn('class="verdict broken"', self.html)
+        self.assertIn("FAILED fuzzing", self.said)
+        self.assertEqual(self.run_suite(HEALTHY, None, "--parts", self.file("parts.json", [1])), 2)
+
+    @unittest.skipUnless(shutil.which("ctest"), "needs ctest")
+    def test_headline_and_exit_status_agree_with_ctest(self):
+        """Tests that pass, fail, skip themselves or have no program, as ctest itself writes them."""
+        cases = {
+            "passes": ("/bin/sh -c true", "", True),
+            "fails": ("/bin/sh -c false", "", False),
+            "skips": ('/bin/sh -c "exit 77"', "SKIP_RETURN_CODE 77", True),
+            "says so": ('/bin/sh -c "echo skipped"', "SKIP_REGULAR_EXPRESSION skipped", True),
+            "is disabled": ("/bin/sh -c false", "DISABLED TRUE", True),
+            "has no program": ("/no/such/program", "", False),
+        }
+        for name, (command, properties, good) in cases.items():
+            for claim in ("V-ONE-02 ", ""):
+                with self.subTest(name + " " + claim):
+                    build = self.folder / "build"
+                    build.mkdir(exist_ok=True)
+                    tests = [(f"{known} passes", "/bin/sh -c true", "")
+                             for known in ("V-ONE-01", "V-ONE-02", "V-TWO-01")]
+                    tests.append((claim + name, command, properties))
+                    (build / "CTestTestfile.cmake").write_text("".join(
+                        f'add_test("{test}" {what})\n' +
+                        (f'set_tests_properties("{test}" PROPERTIES {how})\n' if how else "")
+                        for test, what, how in tests), encoding="utf-8")
+                    junit = self.folder / "ctest.xml"
+                    ctest = subprocess.run(
+                        ["ctest", "--test-dir", build, "--output-junit", junit],
+                        capture_output=True, check=False).returncode
+                    status = self.run_report(
+                        HEALTHY, "--claims", self.file("claims.md", TABLE), "--junit", str(junit))
+                    self.assertEqual((ctest == 0, status == 0), (good, good), self.said)
+                    self.assertEqual("✓ 3 of 3 claims hold" in self.html, good)
+                    self.assertEqual('class="verdict broken"' in self.html, not good)
+                    skipped = good and name != "passes"
+                    self.assertEqual("1 test skipped here: " + claim + name in self.html, skipped)
 
     def test_numbers_that_are_not_finite(self):
         passes = measurement("V-ONE-01", None, 1, "slope of a wrong derivative", "lower", True)
@@ -229,6 +282,17 @@ class ReportTest(unittest.TestCase):
         self.assertIn("99.9&#8239;%", self.html)  # not rounded up to all
         for text in ("cell/yarn.hpp:7", "a - b", "b is zero", "19998 of 20000"):
             self.assertIn(text, self.html)
+
+    def test_record_of_a_mutation_run(self):
+        record = {**MUTATION, "recorded": True, "date": "2026-04-01", "commit": "0123456789abcdef",
+                  "changed": ["crossbeam/cell/yarn.hpp"]}
+        self.run_suite(HEALTHY, None, "--mutation", self.file("mutation.json", record))
+        for text in ("recorded 2026-04-01, commit 0123456789; 1 header changed since",
+                     "<code>crossbeam/cell/yarn.hpp</code>"):
+            self.assertIn(text, self.html)
+        record["changed"] = []
+        self.run_suite(HEALTHY, None, "--mutation", self.file("mutation.json", record))
+        self.assertIn("no header changed since", self.html)
 
     def test_build(self):
         build = {"compiler": "C 1.2", "flags": "-O2 -DX=<y>", "version": "1.2.3", "eigen": "3.4.0"}

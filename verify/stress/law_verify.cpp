@@ -1,4 +1,5 @@
-// Kinematics and law under any strain: finite or refused, never a stress of a strain that cannot be.
+// Kinematics and law under any strain: finite or refused, never a stress of a strain that cannot
+// be.
 
 #include "fuzz/properties.hpp"
 #include "law/laws.hpp"
@@ -130,7 +131,7 @@ TEST_CASE("V-STRESS-04 kinematics: refused, or right and finite") {
       Matrix2<double> S;
       S << 2, 1, 1, -1;
       const Matrix3<double> sigma = cauchy_stress<double>(S, Base<double>::Identity(), J);
-      const bool stress = sigma.allFinite() || J < 1e-300;  // else the quotient is no number
+      const bool stress = sigma.allFinite() || J < 1e-300;  // else the quotient is NaN
       CHECK_MESSAGE(stress, "Cauchy stress ", sigma, " for J = ", J);
       wrong += !stress;
     } catch (const InputError&) {

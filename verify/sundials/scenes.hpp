@@ -17,7 +17,7 @@ using T = NativePack<double>;
 
 inline Points positions(const Model<double>& model) {
   Points x;
-  for (int n = 0; n < model.state.node_count; ++n) x.push_back(eigen(model.state.x.get(n)));
+  for (int n = 0; n < model.nodes().node_count; ++n) x.push_back(eigen(model.nodes().x.get(n)));
   return x;
 }
 
@@ -38,8 +38,7 @@ Frames frames(const SphereSheet& sheet, const reference::Tolerances& tolerances)
 
 /// @param steps of the explicit scheme between two frames
 inline Frames explicit_frames(const SphereSheet& sheet, int steps) {
-  CentralDifference<T> run(sheet.model<double>());
-  run.start(sheet.duration / 10 / steps);
+  CentralDifference<T> run(sheet.model<double>(), TimeStep::fixed(sheet.duration / 10 / steps));
   Frames out;
   while (out.size() < 10) {
     for (int k = 0; k < steps; ++k) run.step();

@@ -17,8 +17,8 @@ using reference::StaticResult;
 using verify::claim;
 
 /// A sheet whose rim is put to an affine map of its plane; inside, the nodes start off their places
-/// by up to 0.3 mm; of slack sheets in the plane: how they buckle out of it is another question, with
-/// many answers.
+/// by up to 0.3 mm; of slack sheets in the plane: how they buckle out of it is another question,
+/// with many answers.
 struct HeldSheet {
   static constexpr int n = 8;
   Mesh<4> sheet = rectangle(40, 40, n, n, 0.3);
@@ -27,7 +27,7 @@ struct HeldSheet {
   HeldSheet(double xx, double yy, double xy, bool planar, verify::Random& random)
       : model(NodalState<double>(sheet, areal_mass, fixed_rim(n, n)), areal_mass) {
     const auto law = fabric(pi / 2, 0.01);
-    model.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
+    model.add(std::make_unique<MembraneSweepWithTangent<T, Quadrilateral<1>, decltype(law)>>(
         sheet, law, areal_mass, MembraneOptions{1e-4, 0.06}));
     model.add(
         std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{1.4e-3, 1.4e-3}, areal_mass));
@@ -36,8 +36,8 @@ struct HeldSheet {
       Vec3<double> x{(1 + xx) * X.x + xy * X.y, (1 + yy) * X.y, 0};
       Eigen::Vector3d d = random.vector(0.3);
       if (planar) d.z() = 0;
-      if (model.state.free.x[k] > 0) x = x + vec3(d);
-      model.state.x.set(k, x);
+      if (model.nodes().free.x[k] > 0) x = x + vec3(d);
+      model.nodes().x.set(k, x);
     }
   }
 };
@@ -92,7 +92,7 @@ TEST_CASE(
     INFO(c.name, table(r));
     REQUIRE(r.converged);
     std::vector<ElementSample> elements;
-    held.model.blocks[0]->sample(held.model.state, elements);
+    held.model.blocks()[0]->sample(held.model.nodes(), elements);
     int slack = 0;
     for (const auto& e : elements) slack += e.slack;
     REQUIRE((slack == 0) == c.taut);
@@ -126,17 +126,16 @@ TEST_CASE(
   sheet.held = true;
   sheet.friction_model = Friction::elastic_stick;
   sheet.smoothing = 0;
-  CentralDifference<T> run(sheet.model<double>());
-  run.start(0.9 * run.critical_step());
+  CentralDifference<T> run(sheet.model<double>(), TimeStep::fraction(0.9));
   double unbalanced = 0, moved = 0;
   std::string table;
   std::vector<double> at, distances;
-  // The scheme's rest is approached with its damping; how far away the equilibrium is falls with it.
+  // The run comes to rest by its damping; its distance from the equilibrium falls with it.
   for (double t : {1.5, 2.0, 3.0}) {
     while (run.time() < t * sheet.duration) run.step();
     const Points before = positions(run.model());
     Model<double>& model = run.model();
-    const NodalState<double> kept = model.state;
+    const NodalState<double> kept = model.nodes();
     StaticProblem problem(model, run.time());
     const StaticResult r = find_equilibrium(problem, {1e-10, 200, 0});
     REQUIRE(r.converged);
@@ -145,8 +144,8 @@ TEST_CASE(
     at.push_back(t);
     distances.push_back(moved);
     table += "\n  " + std::to_string(t) + " strokes: " + std::to_string(1e6 * moved) + " nm";
-    model.state = kept;
-    model.tools[0]->place(sheet.travel(run.time()), 0);
+    model.nodes() = kept;
+    model.tools()[0]->place(sheet.travel(run.time()), 0);
   }
   INFO(table);
   REQUIRE(positions(run.model())[sheet.middle()].z() > 4.8);

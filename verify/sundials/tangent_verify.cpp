@@ -29,9 +29,9 @@ struct PressedSheet {
   PressedSheet(double warp_angle, verify::Random& random, bool planes)
       : sheet(mesh<corners>(grid(n, n, edge, 0.15, random), cells<corners>(n, n), warp_angle,
                             pi / 2)),
-        model(NodalState<double>(sheet, areal_mass), areal_mass, 0.3) {
+        model(NodalState<double>(sheet, areal_mass), 0.3) {
     const auto law = fabric(pi / 2, 0.01);
-    model.add(std::make_unique<MembraneSweep<T, typename Kind::Element, decltype(law)>>(
+    model.add(std::make_unique<MembraneSweepWithTangent<T, typename Kind::Element, decltype(law)>>(
         sheet, law, areal_mass, MembraneOptions{1e-2, 0.06}));
     model.add(std::make_unique<BendingSweep<T>>(sheet, BendingStiffness{2e-3, 1e-3}, areal_mass,
                                                 SymmetryPlanes{planes, planes}));
@@ -52,8 +52,8 @@ struct PressedSheet {
       const bool inside = X.x > 3 && X.x < 17 && X.y > 3 && X.y < 17;
       const Eigen::Vector3d d = random.vector(0.05);
       const double lift = inside ? 0.75 : -0.55;
-      model.state.x.set(k, {1.015 * X.x + d.x(), 1.012 * X.y + d.y(), lift + d.z()});
-      model.state.v.set(k, vec3(random.vector(0.5)));
+      model.nodes().x.set(k, {1.015 * X.x + d.x(), 1.012 * X.y + d.y(), lift + d.z()});
+      model.nodes().v.set(k, vec3(random.vector(0.5)));
     }
   }
 };
@@ -89,8 +89,8 @@ TEST_CASE(
         system.read(y.data());
         system.rate(0.1, y.data(), rate.data());
         std::vector<double> below(pressed.sheet.node_count, 0.0), above = below;
-        pressed.model.tools[0]->add_pressure(pressed.model.state, below);
-        pressed.model.tools[1]->add_pressure(pressed.model.state, above);
+        pressed.model.tools()[0]->add_pressure(pressed.model.nodes(), below);
+        pressed.model.tools()[1]->add_pressure(pressed.model.nodes(), above);
         int held = 0, pressing = 0;
         for (double p : below) held += p > 0;
         for (double p : above) pressing += p > 0;
@@ -132,8 +132,7 @@ TEST_CASE(
   Model<double> plain = sheet.model<double>();
   const int n = system.size(), half = n / 2;
   Vector y(n), rate(n), back(n);
-  CentralDifference<T> run(sheet.model<double>());
-  run.start(0.5 * run.critical_step());
+  CentralDifference<T> run(sheet.model<double>(), TimeStep::fraction(0.5));
   long different = 0, changed = 0, touching = 0;
   // Forth and back along a run: the culling has to keep up with both.
   std::vector<Vector> states;
@@ -151,14 +150,14 @@ TEST_CASE(
       system.read(back.data());
       changed += (back - states[at]).cwiseAbs().maxCoeff() > 0;
       // The same forces by hand, without skipping.
-      plain.state.x = model.state.x;
-      plain.state.v = plain.state.v_predicted = model.state.v;
-      plain.tools[0]->place(sheet.travel(t), sheet.speed(t));
-      plain.tools[0]->reset_culling();
+      plain.nodes().x = model.nodes().x;
+      plain.nodes().v = plain.nodes().v_predicted = model.nodes().v;
+      plain.tools()[0]->place(sheet.travel(t), sheet.speed(t));
+      plain.tools()[0]->reset_culling();
       plain.compute_forces(1, 0);
-      touching += plain.tools[0]->force_on_fabric().z > 0;
+      touching += plain.tools()[0]->force_on_fabric().z > 0;
       for (int i = 0; i < half; ++i) {
-        const auto& s = plain.state;
+        const auto& s = plain.nodes();
         const double* f[] = {s.f.x.data(), s.f.y.data(), s.f.z.data()};
         const double* free[] = {s.free.x.data(), s.free.y.data(), s.free.z.data()};
         const double expected = free[i % 3][i / 3] * (s.inverse_mass[i / 3] * f[i % 3][i / 3] -
@@ -180,12 +179,27 @@ TEST_CASE(
   } catch (const InputError& error) {
     CHECK(error.field() == "tools[0].friction_model");
   }
+  // A sweep that was compiled without a tangent says so.
+  Model<double> bare(NodalState<double>(sheet.mesh(), areal_mass), areal_mass);
+  const auto law = fabric(pi / 2, 0.01);
+  bare.add(std::make_unique<MembraneSweep<T, Quadrilateral<1>, decltype(law)>>(
+      sheet.mesh(), law, areal_mass, MembraneOptions{}));
+  FirstOrderSystem without(bare);
+  Vector at_rest(without.size());
+  without.read(at_rest.data());
+  FirstOrderSystem::Matrix none;
+  try {
+    without.jacobian(0, at_rest.data(), none);
+    FAIL_CHECK("a sweep without a tangent gave one");
+  } catch (const InputError& error) {
+    CHECK(error.field() == "force block");
+  }
   Model<double> still(NodalState<double>(sheet.mesh(), areal_mass), areal_mass);
   ContactParameters smooth;
   smooth.friction_model = Friction::smooth;
   still.add(tool<T>(Plane<double>({0, 0, -1}, {0, 0, 1}),
                     ToolMotion::prescribed([](double t) { return t; }), smooth,
-                    still.state.node_count));
+                    still.nodes().node_count));
   try {
     FirstOrderSystem none(still);
     FAIL_CHECK("a tool without its velocity was accepted");

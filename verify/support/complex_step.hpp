@@ -14,8 +14,8 @@
 
 namespace verify {
 
-/// A complex number that is ordered by its real part, as a kernel's comparisons expect. It is a plain
-/// scalar to the kernel: iterations run in it, and nothing is made of derivatives ([C-7]).
+/// A complex number that is ordered by its real part, as a kernel's comparisons expect. It is a
+/// plain scalar to the kernel: iterations run in it, and nothing is made of derivatives ([C-7]).
 struct ComplexStep {
   static constexpr double h = 1e-30;
   std::complex<double> z{};

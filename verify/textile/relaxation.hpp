@@ -21,19 +21,19 @@ using Run = CentralDifference<T>;
 
 /// A sheet whose nodes start at `x`; components that may move are off by up to `perturbation`.
 template <class Element, class Law>
-Run sheet(const Mesh<Element::corners>& m, const Law& law,
-          const std::vector<NodeConstraint>& constraints, const Points& x, verify::Random& random,
-          double perturbation, double hourglass_modulus = 0.01) {
+Model<double> sheet(const Mesh<Element::corners>& m, const Law& law,
+                    const std::vector<NodeConstraint>& constraints, const Points& x,
+                    verify::Random& random, double perturbation, double hourglass_modulus = 0.01) {
   NodalState<double> state(m, areal_mass, constraints);
   for (int n = 0; n < m.node_count; ++n) {
     const auto d = random.vector(perturbation);
     const auto free = state.free.get(n);
     state.x.set(n, vec3(x[n]) + Vec3<double>{d.x() * free.x, d.y() * free.y, d.z() * free.z});
   }
-  Run run(std::move(state), areal_mass);
-  run.add(std::make_unique<MembraneSweep<T, Element, Law>>(m, law, areal_mass,
-                                                           MembraneOptions{hourglass_modulus, 0}));
-  return run;
+  Model<double> model(std::move(state));
+  model.add(std::make_unique<MembraneSweep<T, Element, Law>>(
+      m, law, areal_mass, MembraneOptions{hourglass_modulus, 0}));
+  return model;
 }
 
 /// Steps until no free component of a nodal force exceeds `tolerance` [kN], ten steps in a row.
@@ -41,10 +41,10 @@ Run sheet(const Mesh<Element::corners>& m, const Law& law,
 /// Between steps the velocities are damped critically for the mode that moves: its frequency is the
 /// Rayleigh quotient of the last change of the forces (Underwood's adaptive dynamic relaxation).
 /// What the steps converge to does not depend on it.
-inline void relax(Run& run, double tolerance, long most = 400000) {
+inline Run relax(Model<double> model, double tolerance, long most = 400000) {
+  Run run(std::move(model), TimeStep::fraction(0.9));
   NodalState<double>& s = run.state();
-  const double dt = 0.9 * run.critical_step();
-  run.start(dt);
+  const double dt = run.time_step();
   auto before = s.f, moved = s.v;  // forces and velocities of the last step
   double residual = 0;
   long step = 0;
@@ -76,6 +76,7 @@ inline void relax(Run& run, double tolerance, long most = 400000) {
   }
   INFO("largest force left: ", residual, " kN, after ", step, " steps");
   REQUIRE(residual <= tolerance);
+  return run;
 }
 
 /// Yarns that are as stiff pressed as pulled and all but straight: the limit in which trellises,

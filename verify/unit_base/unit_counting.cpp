@@ -39,8 +39,7 @@ auto membrane(SolverControl control) {
   return crossbeam::WovenMembrane(
       crossbeam::CrossedBeamCell<R>(crossbeam::CellParameters<double>{}.cast<R>()),
       crossbeam::PolynomialShear<R>(
-          crossbeam::PolynomialCurve<R>({R(5e-5), R(-8e-4), R(6e-3), R(-1.2e-2), R(8.5e-3)}),
-          angle),
+          crossbeam::PolynomialCurve<R>({R(5e-5), R(-8e-4), R(6e-3), R(-1.2e-2), R(8.5e-3)})),
       angle, crossbeam::YarnWidth::corrected, control);
 }
 

@@ -22,7 +22,8 @@ Lanes<P> random_lanes(std::mt19937& random, double low, double high) {
   std::uniform_real_distribution<double> uniform(low, high);
   Lanes<P> values;
   for (auto& value : values) {
-    // Volatile: g++ 12 takes two floats that came of doubles for those doubles when they are widened.
+    // Volatile: g++ 12 takes two floats that came of doubles for those doubles when they are
+    // widened.
     const volatile auto rounded = static_cast<typename P::Value>(uniform(random));
     value = rounded;
   }

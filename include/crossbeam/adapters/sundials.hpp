@@ -1,9 +1,10 @@
 #pragma once
 /// @file
-/// Reference integrators and statics by SUNDIALS (6.4 or later 6.x): opt-in, not part of the
+/// Reference integrators and statics by SUNDIALS (6.4 or later, 7 included): opt-in, not part of the
 /// umbrella. A program that includes it links crossbeam::sundials (find_package(crossbeam COMPONENTS
 /// sundials)). Theory: docs/theory/reference.md, [R-3].
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/model/first_order_system.hpp"
 #include "crossbeam/model/statics.hpp"
 
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,11 +30,11 @@ namespace crossbeam::reference {
 
 namespace detail {
 
-inline void check(int flag, const std::string& call) {
+inline void ensure(int flag, const std::string& call) {
   if (flag < 0) throw RunError("SUNDIALS: " + call + " returned " + std::to_string(flag));
 }
 template <class P>
-P* check(P* pointer, const std::string& call) {
+P* ensure(P* pointer, const std::string& call) {
   if (!pointer) throw RunError("SUNDIALS: " + call + " returned nothing");
   return pointer;
 }
@@ -51,7 +53,7 @@ inline int linear_combination(int count, sunrealtype* c, N_Vector* X, N_Vector z
   constexpr sunindextype strip = 256;
   sunrealtype sum[strip];
   for (sunindextype begin = 0; begin < n; begin += strip) {
-    const sunindextype width = std::min(strip, n - begin);
+    const sunindextype width = minimum(strip, n - begin);
     for (sunindextype i = 0; i < width; ++i) sum[i] = c[0] * x[0][begin + i];
     for (int k = 1; k < count; ++k)
       for (sunindextype i = 0; i < width; ++i) sum[i] += c[k] * x[k][begin + i];
@@ -92,7 +94,7 @@ inline sunrealtype wrms_norm(N_Vector X, N_Vector W) {
 class Vector {
  public:
   Vector(std::int64_t n, SUNContext context)
-      : v_(detail::check(N_VNew_Serial(n, context), "N_VNew_Serial")) {
+      : v_(detail::ensure(N_VNew_Serial(n, context), "N_VNew_Serial")) {
     v_->ops->nvlinearcombination = detail::linear_combination;
     v_->ops->nvlinearsum = detail::linear_sum;
     v_->ops->nvscale = detail::scale;
@@ -117,10 +119,10 @@ namespace detail {
 class SparseSolver {
  public:
   SparseSolver(N_Vector y, std::int64_t n, std::int64_t entries, SUNContext context)
-      : matrix_(check(SUNSparseMatrix(n, n, entries, CSC_MAT, context), "SUNSparseMatrix")),
-        solver_(check(SUNLinSol_KLU(y, matrix_, context), "SUNLinSol_KLU")) {
+      : matrix_(ensure(SUNSparseMatrix(n, n, entries, CSC_MAT, context), "SUNSparseMatrix")),
+        solver_(ensure(SUNLinSol_KLU(y, matrix_, context), "SUNLinSol_KLU")) {
     constexpr int approximate_minimum_degree = 0;
-    check(SUNLinSol_KLUSetOrdering(solver_, approximate_minimum_degree), "KLUSetOrdering");
+    ensure(SUNLinSol_KLUSetOrdering(solver_, approximate_minimum_degree), "KLUSetOrdering");
   }
   ~SparseSolver() {
     SUNLinSolFree(solver_);
@@ -198,7 +200,7 @@ class Integrator {
   virtual void evolve(double t) = 0;
   [[nodiscard]] virtual long long steps() const = 0;
 
-  /// Right-hand side; an answer that is no number asks for a smaller step.
+  /// Right-hand side; an answer that is NaN asks for a smaller step.
   static int rate(sunrealtype t, N_Vector y, N_Vector dy, void* self) {
     FirstOrderSystem& system = static_cast<Integrator*>(self)->system_;
     double* out = N_VGetArrayPointer(dy);
@@ -221,20 +223,20 @@ class RungeKutta5 final : public Integrator {
  public:
   explicit RungeKutta5(Model<double>& model, const Tolerances& tolerances = {})
       : Integrator(model, tolerances),
-        memory_(detail::check(ERKStepCreate(rate, 0.0, y_, context_), "ERKStepCreate")) {
-    detail::check(ERKStepSetTableName(memory_, "ARKODE_CASH_KARP_6_4_5"), "ERKStepSetTableName");
-    detail::check(ERKStepSStolerances(memory_, tolerances.relative, tolerances.absolute),
-                  "ERKStepSStolerances");
-    detail::check(ERKStepSetUserData(memory_, static_cast<Integrator*>(this)),
-                  "ERKStepSetUserData");
-    detail::check(ERKStepSetMaxNumSteps(memory_, no_limit), "ERKStepSetMaxNumSteps");
+        memory_(detail::ensure(ERKStepCreate(rate, 0.0, y_, context_), "ERKStepCreate")) {
+    detail::ensure(ERKStepSetTableName(memory_, "ARKODE_CASH_KARP_6_4_5"), "ERKStepSetTableName");
+    detail::ensure(ERKStepSStolerances(memory_, tolerances.relative, tolerances.absolute),
+                   "ERKStepSStolerances");
+    detail::ensure(ERKStepSetUserData(memory_, static_cast<Integrator*>(this)),
+                   "ERKStepSetUserData");
+    detail::ensure(ERKStepSetMaxNumSteps(memory_, no_limit), "ERKStepSetMaxNumSteps");
   }
   ~RungeKutta5() override { ERKStepFree(&memory_); }
 
  private:
   void evolve(double t) override {
-    detail::check(ERKStepSetStopTime(memory_, t), "ERKStepSetStopTime");
-    detail::check(ERKStepEvolve(memory_, t, y_, &time_, ARK_NORMAL), "ERKStepEvolve");
+    detail::ensure(ERKStepSetStopTime(memory_, t), "ERKStepSetStopTime");
+    detail::ensure(ERKStepEvolve(memory_, t, y_, &time_, ARK_NORMAL), "ERKStepEvolve");
   }
   [[nodiscard]] long long steps() const override {
     long n = 0;
@@ -252,16 +254,16 @@ class Multistep : public Integrator {
  protected:
   Multistep(Model<double>& model, const Tolerances& tolerances, int method)
       : Integrator(model, tolerances),
-        memory_(detail::check(CVodeCreate(method, context_), "CVodeCreate")) {
-    detail::check(CVodeInit(memory_, rate, 0.0, y_), "CVodeInit");
-    detail::check(CVodeSStolerances(memory_, tolerances.relative, tolerances.absolute),
-                  "CVodeSStolerances");
-    detail::check(CVodeSetUserData(memory_, static_cast<Integrator*>(this)), "CVodeSetUserData");
-    detail::check(CVodeSetMaxNumSteps(memory_, no_limit), "CVodeSetMaxNumSteps");
+        memory_(detail::ensure(CVodeCreate(method, context_), "CVodeCreate")) {
+    detail::ensure(CVodeInit(memory_, rate, 0.0, y_), "CVodeInit");
+    detail::ensure(CVodeSStolerances(memory_, tolerances.relative, tolerances.absolute),
+                   "CVodeSStolerances");
+    detail::ensure(CVodeSetUserData(memory_, static_cast<Integrator*>(this)), "CVodeSetUserData");
+    detail::ensure(CVodeSetMaxNumSteps(memory_, no_limit), "CVodeSetMaxNumSteps");
   }
   void evolve(double t) override {
-    detail::check(CVodeSetStopTime(memory_, t), "CVodeSetStopTime");
-    detail::check(CVode(memory_, t, y_, &time_, CV_NORMAL), "CVode");
+    detail::ensure(CVodeSetStopTime(memory_, t), "CVodeSetStopTime");
+    detail::ensure(CVode(memory_, t, y_, &time_, CV_NORMAL), "CVode");
   }
   [[nodiscard]] long long steps() const override {
     long n = 0;
@@ -277,8 +279,8 @@ class Adams final : public Multistep {
   explicit Adams(Model<double>& model, const Tolerances& tolerances = {})
       : Multistep(model, tolerances, CV_ADAMS),
         corrector_(
-            detail::check(SUNNonlinSol_FixedPoint(y_, 0, context_), "SUNNonlinSol_FixedPoint")) {
-    detail::check(CVodeSetNonlinearSolver(memory_, corrector_), "CVodeSetNonlinearSolver");
+            detail::ensure(SUNNonlinSol_FixedPoint(y_, 0, context_), "SUNNonlinSol_FixedPoint")) {
+    detail::ensure(CVodeSetNonlinearSolver(memory_, corrector_), "CVodeSetNonlinearSolver");
   }
   ~Adams() override { SUNNonlinSolFree(corrector_); }
 
@@ -291,9 +293,9 @@ class BackwardDifferences final : public Multistep {
  public:
   explicit BackwardDifferences(Model<double>& model, const Tolerances& tolerances = {})
       : Multistep(model, tolerances, CV_BDF), linear_(y_, system_.size(), 1, context_) {
-    detail::check(CVodeSetLinearSolver(memory_, linear_.solver(), linear_.matrix()),
-                  "CVodeSetLinearSolver");
-    detail::check(CVodeSetJacFn(memory_, jacobian), "CVodeSetJacFn");
+    detail::ensure(CVodeSetLinearSolver(memory_, linear_.solver(), linear_.matrix()),
+                   "CVodeSetLinearSolver");
+    detail::ensure(CVodeSetJacFn(memory_, jacobian), "CVodeSetJacFn");
   }
 
  private:
@@ -315,17 +317,17 @@ class ResidualForm final : public Integrator {
       : Integrator(model, tolerances),
         dy_(system_.size(), context_),
         rate_(static_cast<std::size_t>(system_.size())),
-        memory_(detail::check(IDACreate(context_), "IDACreate")),
+        memory_(detail::ensure(IDACreate(context_), "IDACreate")),
         linear_(y_, system_.size(), 1, context_) {
     system_.rate(0, y_.data(), dy_.data());
-    detail::check(IDAInit(memory_, residual, 0.0, y_, dy_), "IDAInit");
-    detail::check(IDASStolerances(memory_, tolerances.relative, tolerances.absolute),
-                  "IDASStolerances");
-    detail::check(IDASetUserData(memory_, static_cast<Integrator*>(this)), "IDASetUserData");
-    detail::check(IDASetMaxNumSteps(memory_, no_limit), "IDASetMaxNumSteps");
-    detail::check(IDASetLinearSolver(memory_, linear_.solver(), linear_.matrix()),
-                  "IDASetLinearSolver");
-    detail::check(IDASetJacFn(memory_, jacobian), "IDASetJacFn");
+    detail::ensure(IDAInit(memory_, residual, 0.0, y_, dy_), "IDAInit");
+    detail::ensure(IDASStolerances(memory_, tolerances.relative, tolerances.absolute),
+                   "IDASStolerances");
+    detail::ensure(IDASetUserData(memory_, static_cast<Integrator*>(this)), "IDASetUserData");
+    detail::ensure(IDASetMaxNumSteps(memory_, no_limit), "IDASetMaxNumSteps");
+    detail::ensure(IDASetLinearSolver(memory_, linear_.solver(), linear_.matrix()),
+                   "IDASetLinearSolver");
+    detail::ensure(IDASetJacFn(memory_, jacobian), "IDASetJacFn");
   }
   ~ResidualForm() override { IDAFree(&memory_); }
 
@@ -351,8 +353,8 @@ class ResidualForm final : public Integrator {
     return detail::copy_to(me.J_, J);
   }
   void evolve(double t) override {
-    detail::check(IDASetStopTime(memory_, t), "IDASetStopTime");
-    detail::check(IDASolve(memory_, t, &time_, y_, dy_, IDA_NORMAL), "IDASolve");
+    detail::ensure(IDASetStopTime(memory_, t), "IDASetStopTime");
+    detail::ensure(IDASolve(memory_, t, &time_, y_, dy_, IDA_NORMAL), "IDASolve");
   }
   [[nodiscard]] long long steps() const override {
     long n = 0;
@@ -369,7 +371,9 @@ class ResidualForm final : public Integrator {
 struct StaticOptions {
   double tolerance = 1e-10;  ///< largest unbalanced force over the norm of the internal forces [-]
   int iterations = 200;      ///< at most
-  double largest_step = 0;   ///< of all unknowns together in one iteration [mm]; 0: no bound
+  static constexpr double no_bound = std::numeric_limits<double>::infinity();
+  /// Bound of one iteration's step, the norm over all unknowns [mm]; > 0, or `no_bound`.
+  double largest_step = no_bound;
 };
 
 struct StaticResult {
@@ -400,7 +404,8 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
     }
   };
   require_positive("statics.tolerance", options.tolerance, "-");
-  require_non_negative("statics.largest_step", options.largest_step, "mm");
+  const bool is_bounded = options.largest_step != StaticOptions::no_bound;
+  if (is_bounded) require_positive("statics.largest_step", options.largest_step, "mm");
 
   ::sundials::Context context;
   const int n = problem.unknowns();
@@ -409,23 +414,28 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
   problem.read(q.data());
   N_VConst(1.0, ones);
   StaticResult out;
-  std::unique_ptr<void, void (*)(void*)> memory(detail::check(KINCreate(context), "KINCreate"),
+  std::unique_ptr<void, void (*)(void*)> memory(detail::ensure(KINCreate(context), "KINCreate"),
                                                 [](void* m) { KINFree(&m); });
   void* kin = memory.get();
-  detail::check(KINInit(kin, Call::residual, q), "KINInit");
-  detail::check(KINSetUserData(kin, &call), "KINSetUserData");
+  detail::ensure(KINInit(kin, Call::residual, q), "KINInit");
+  detail::ensure(KINSetUserData(kin, &call), "KINSetUserData");
   const detail::SparseSolver linear(q, n, 1, context);
-  detail::check(KINSetLinearSolver(kin, linear.solver(), linear.matrix()), "KINSetLinearSolver");
-  detail::check(KINSetJacFn(kin, Call::tangent), "KINSetJacFn");
-  detail::check(KINSetMaxSetupCalls(kin, 1), "KINSetMaxSetupCalls");  // a new tangent every time
-  detail::check(KINSetNumMaxIters(kin, options.iterations), "KINSetNumMaxIters");
-  detail::check(KINSetFuncNormTol(kin, options.tolerance), "KINSetFuncNormTol");
-  detail::check(KINSetScaledStepTol(kin, 1e-15), "KINSetScaledStepTol");
+  detail::ensure(KINSetLinearSolver(kin, linear.solver(), linear.matrix()), "KINSetLinearSolver");
+  detail::ensure(KINSetJacFn(kin, Call::tangent), "KINSetJacFn");
+  detail::ensure(KINSetMaxSetupCalls(kin, 1), "KINSetMaxSetupCalls");  // a new tangent every time
+  detail::ensure(KINSetNumMaxIters(kin, options.iterations), "KINSetNumMaxIters");
+  detail::ensure(KINSetFuncNormTol(kin, options.tolerance), "KINSetFuncNormTol");
+  detail::ensure(KINSetScaledStepTol(kin, 1e-15), "KINSetScaledStepTol");
   // Where yarns pass between taut and slack, short steps are the way and no failure.
-  detail::check(KINSetMaxBetaFails(kin, options.iterations), "KINSetMaxBetaFails");
-  detail::check(KINSetErrFile(kin, nullptr), "KINSetErrFile");  // the result says what came of it
-  if (options.largest_step > 0)
-    detail::check(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
+  detail::ensure(KINSetMaxBetaFails(kin, options.iterations), "KINSetMaxBetaFails");
+  // The result says what came of it, not a line on the terminal.
+#if SUNDIALS_VERSION_MAJOR >= 7
+  SUNContext_ClearErrHandlers(context);
+#else
+  detail::ensure(KINSetErrFile(kin, nullptr), "KINSetErrFile");
+#endif
+  if (is_bounded)
+    detail::ensure(KINSetMaxNewtonStep(kin, options.largest_step), "KINSetMaxNewtonStep");
 
   // The internal forces of the start may be far from those of the end: once more with the latter.
   double internal = problem.internal_force(q.data());
@@ -442,7 +452,7 @@ inline StaticResult find_equilibrium(StaticProblem& problem, const StaticOptions
     problem.residual(q.data(), r.data());
     double largest = 0, squared = 0;
     for (double f : r) {
-      largest = std::max(largest, std::abs(f));
+      largest = maximum(largest, std::abs(f));
       squared += f * f;
     }
     out.residual = internal > 0 ? largest / internal : largest;

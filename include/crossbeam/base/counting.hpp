@@ -30,9 +30,9 @@ struct OperationCount {
   std::int64_t functions = 0;    ///< sin, cos, exp, log and calls through per_lane
 
   /// Floating-point operations by the convention of every rate here: addition, multiplication,
-  /// division and square root are one each, so that a fused multiply-add is two; comparison,
-  /// selection, negation and library functions are none. A division takes as long as many additions,
-  /// so that a kernel with divisions cannot reach the rate of one without.
+  /// division and square root count one each, so that a fused multiply-add is two; comparison,
+  /// selection, negation and library functions count none. A division takes as long as many
+  /// additions, so that a kernel with divisions cannot reach the rate of one without.
   [[nodiscard]] std::int64_t flops() const {
     return additions + multiplications + divisions + square_roots;
   }
@@ -50,7 +50,8 @@ namespace detail {
 inline thread_local OperationCount counted_operations{};
 }
 
-/// What the calling thread's numbers have done since its reset_operation_count(), or since it began.
+/// What the calling thread's numbers have done since its reset_operation_count(), or since it
+/// began.
 inline OperationCount operation_count() { return detail::counted_operations; }
 inline void reset_operation_count() { detail::counted_operations = {}; }
 

@@ -1,8 +1,8 @@
 #pragma once
 /// @file
-/// Dual numbers: a value and N derivatives, nestable for second derivatives. The kernels of cell, law
-/// and element do not know them; the contact takes its tangent from them. A user's own cell or law
-/// gets its exact tangent by evaluating it on Dual<double, N>.
+/// Dual numbers: a value and N derivatives. They can be nested for second derivatives. The kernels
+/// of cell, law and element do not know them; the contact takes its tangent from them. A user's own
+/// cell or law gets its exact tangent when it is evaluated on Dual<double, N>.
 
 #include "crossbeam/base/scalar.hpp"
 

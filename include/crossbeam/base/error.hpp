@@ -5,11 +5,11 @@
 ///  - contract: CROSSBEAM_EXPECTS, a programming mistake, checked unless NDEBUG is set;
 ///  - numerics: a status in the returned struct (kernels) or RunError (a time integration).
 
-#include <cmath>
+#include "crossbeam/base/scalar.hpp"
+
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -43,12 +43,15 @@ class RunError : public std::runtime_error {
 
 namespace detail {
 
+/// The digits that make a double; of wider numbers as many.
+[[nodiscard]] inline std::string to_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
 template <class T>
 [[nodiscard]] std::string to_text(const T& value) {
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  return text.str();
+  return to_text(static_cast<double>(value));
 }
 
 }  // namespace detail
@@ -56,34 +59,30 @@ template <class T>
 /// Admissible ranges of one real input; each throws InputError and returns the value otherwise.
 /// @{
 template <class T>
-T require_finite(const std::string& field, T value, const std::string& unit) {
-  using std::isfinite;
-  if (!isfinite(value)) throw InputError(field, detail::to_text(value), unit, "a finite number");
+T require_finite(const std::string& field, const T& value, const std::string& unit) {
+  if (!is_finite(value)) throw InputError(field, detail::to_text(value), unit, "a finite number");
   return value;
 }
 
 template <class T>
-T require_positive(const std::string& field, T value, const std::string& unit) {
-  using std::isfinite;
-  if (!(isfinite(value) && value > T(0)))
+T require_positive(const std::string& field, const T& value, const std::string& unit) {
+  if (!(is_finite(value) && value > T(0)))
     throw InputError(field, detail::to_text(value), unit, "a finite number > 0");
   return value;
 }
 
 template <class T>
-T require_non_negative(const std::string& field, T value, const std::string& unit) {
-  using std::isfinite;
-  if (!(isfinite(value) && value >= T(0)))
+T require_non_negative(const std::string& field, const T& value, const std::string& unit) {
+  if (!(is_finite(value) && value >= T(0)))
     throw InputError(field, detail::to_text(value), unit, "a finite number >= 0");
   return value;
 }
 
 /// Open interval (low, high).
 template <class T>
-T require_between(const std::string& field, T value, const std::string& unit, double low,
+T require_between(const std::string& field, const T& value, const std::string& unit, double low,
                   double high) {
-  using std::isfinite;
-  if (!(isfinite(value) && value > T(low) && value < T(high)))
+  if (!(is_finite(value) && value > T(low) && value < T(high)))
     throw InputError(field, detail::to_text(value), unit,
                      "strictly between " + detail::to_text(low) + " and " + detail::to_text(high));
   return value;

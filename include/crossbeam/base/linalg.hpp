@@ -11,17 +11,22 @@
 
 namespace crossbeam {
 
+/// Unaligned and by columns whatever the compiler's flags and Eigen's macros say: files that are
+/// compiled for different processors then agree about every struct that holds one
+/// (docs/embedding.md).
+template <class T, int Rows, int Columns>
+using FixedMatrix = Eigen::Matrix<T, Rows, Columns, Eigen::ColMajor | Eigen::DontAlign>;
 template <class T>
-using Vector2 = Eigen::Matrix<T, 2, 1>;
+using Vector2 = FixedMatrix<T, 2, 1>;
 template <class T>
-using Vector3 = Eigen::Matrix<T, 3, 1>;
+using Vector3 = FixedMatrix<T, 3, 1>;
 template <class T>
-using Matrix2 = Eigen::Matrix<T, 2, 2>;
+using Matrix2 = FixedMatrix<T, 2, 2>;
 template <class T>
-using Matrix3 = Eigen::Matrix<T, 3, 3>;
+using Matrix3 = FixedMatrix<T, 3, 3>;
 /// Two spatial vectors side by side: columns are base vectors.
 template <class T>
-using Base = Eigen::Matrix<T, 3, 2>;
+using Base = FixedMatrix<T, 3, 2>;
 
 /// (E11, E22, 2 E12) of a symmetric strain tensor.
 template <class T>

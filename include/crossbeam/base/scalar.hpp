@@ -5,8 +5,12 @@
 /// (base/simd.hpp). It therefore never branches on a value: it compares, gets a mask (bool or a
 /// lane mask) and selects.
 
+#include "crossbeam/base/version.hpp"
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -37,7 +41,7 @@
 #define CROSSBEAM_INLINE_LAMBDA
 #endif
 
-/// The same for what stays on the processor: the vector types of packs are none to a device.
+/// The same for what stays on the processor: a device does not know the vector types of packs.
 #if defined(__CUDACC__)
 #define CROSSBEAM_HOST_INLINE __forceinline__
 #else
@@ -46,7 +50,22 @@
 
 namespace crossbeam {
 
-/// Specialised by packs and dual numbers.
+/// Whether x is a number and finite; of float and double by the exponent's bits, for under
+/// -ffast-math compilers take std::isfinite for true. (By reference: there clang gives an argument
+/// that is a NaN no defined value.)
+template <class T>
+CROSSBEAM_INLINE bool is_finite(const T& x) {
+  if constexpr (std::is_same_v<T, double>) {
+    return std::bit_cast<std::uint64_t>(x) << 1 < std::uint64_t{0x7ff} << 53;
+  } else if constexpr (std::is_same_v<T, float>) {
+    return std::bit_cast<std::uint32_t>(x) << 1 < std::uint32_t{0xff} << 24;
+  } else {
+    using std::isfinite;
+    return isfinite(x);
+  }
+}
+
+/// What the kernels know about a scalar type. Packs and dual numbers specialise it.
 template <class T>
 struct ScalarTraits {
   using Real = T;                             ///< type of the constants a kernel mixes with T
@@ -62,7 +81,7 @@ using passive_t = typename ScalarTraits<T>::Passive;
 template <class T>
 inline constexpr int lanes_v = ScalarTraits<T>::lanes;
 
-/// As many lanes of double as T has: what positions are moved in. Specialised by packs.
+/// The type of positions: as many lanes of double as T has. Packs specialise it.
 template <class T>
 struct DoubleLanes {
   using type = T;
@@ -70,7 +89,7 @@ struct DoubleLanes {
 template <class T>
 using double_lanes_t = typename DoubleLanes<T>::type;
 
-/// Value without derivatives; overloaded for dual numbers.
+/// The value without its derivatives. Dual numbers overload it.
 template <class T>
   requires(ScalarTraits<T>::derivative_order == 0)
 CROSSBEAM_INLINE constexpr const T& passive(const T& x) {
@@ -85,11 +104,11 @@ CROSSBEAM_INLINE constexpr bool any(bool condition) { return condition; }
 CROSSBEAM_INLINE constexpr bool all(bool condition) { return condition; }
 
 template <class T>
-CROSSBEAM_INLINE T maximum(const T& a, const T& b) {
+CROSSBEAM_INLINE constexpr T maximum(const T& a, const T& b) {
   return select(a < b, b, a);
 }
 template <class T>
-CROSSBEAM_INLINE T minimum(const T& a, const T& b) {
+CROSSBEAM_INLINE constexpr T minimum(const T& a, const T& b) {
   return select(b < a, b, a);
 }
 template <class T>
@@ -112,8 +131,8 @@ CROSSBEAM_INLINE T square(const T& a) {
   return a * a;
 }
 
-/// body(0), ..., body(N - 1), unrolled: arrays of packs that a loop would index at run time have to live
-/// in memory, these do not. The indices are integral constants.
+/// Calls body(0), ..., body(N - 1), unrolled; the indices are integral constants. Arrays of packs
+/// that a loop would index at run time have to live in memory, these do not.
 template <int N, class Body>
 CROSSBEAM_INLINE void unrolled(const Body& body) {
   [&]<int... k>(std::integer_sequence<int, k...>) CROSSBEAM_INLINE_LAMBDA {
@@ -127,7 +146,7 @@ constexpr real_t<T> epsilon_of() {
   return std::numeric_limits<real_t<T>>::epsilon();
 }
 
-/// Largest value over the lanes; the value itself for plain scalars.
+/// The largest value over the lanes; for plain scalars, the value itself.
 template <class T>
   requires(ScalarTraits<T>::lanes == 1)
 CROSSBEAM_INLINE T lane_maximum(const T& x) {
@@ -146,8 +165,8 @@ CROSSBEAM_INLINE T per_lane(const T& x, Op op) {
   return op(x);
 }
 
-/// Aggregate of three components that any scalar can fill: points, directions and forces in the
-/// kernels. (Eigen carries the public matrices; inside a SIMD sweep a plain struct optimises better.)
+/// Three components of any scalar: the points, directions and forces of the kernels. (The public
+/// matrices are Eigen's; inside a SIMD sweep compilers optimise a plain struct better.)
 template <class T>
 struct Vec3 {
   T x, y, z;

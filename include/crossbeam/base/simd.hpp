@@ -8,10 +8,13 @@
 
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
-#if defined(__SSE2__)
+#if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>  // a third of the time of the whole, which Eigen too asks for from AVX on
 #elif defined(__ARM_NEON) && defined(__aarch64__)
 #include <arm_neon.h>
 #endif
@@ -40,6 +43,18 @@ struct VectorOf {
   // a load of the whole then has to wait for.)
   typedef S unaligned __attribute__((vector_size(N * sizeof(S)), aligned(alignof(S)), may_alias));
 };
+/// One lane is a plain number, and its mask a bool: g++ 12 miscompiles masks of one-element vectors
+/// from -O2 on (a stopped plate was pushed on by its friction, V-CONT-22), and other compilers have
+/// no vectors.
+template <class S>
+struct VectorOf<S, 1> {
+  using type = S;
+  using unaligned = S;
+};
+template <class S, int N>
+using MaskOf =
+    std::conditional_t<N == 1, bool,
+                       typename VectorOf<typename MaskInteger<sizeof(S)>::type, N>::type>;
 
 }  // namespace detail
 
@@ -47,18 +62,34 @@ struct VectorOf {
 template <class S, int N>
 struct PackMask {
   using Integer = typename detail::MaskInteger<sizeof(S)>::type;
-  using Vector = typename detail::VectorOf<Integer, N>::type;
+  using Vector = detail::MaskOf<S, N>;
   Vector v;
 
-  CROSSBEAM_HOST_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v & b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v | b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v & b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v | b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator!(PackMask a) { return {~a.v}; }
-  CROSSBEAM_HOST_INLINE bool operator[](int lane) const { return v[lane] != 0; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator&(PackMask a, PackMask b) {
+    return {Vector(a.v & b.v)};
+  }
+  CROSSBEAM_HOST_INLINE friend PackMask operator|(PackMask a, PackMask b) {
+    return {Vector(a.v | b.v)};
+  }
+  CROSSBEAM_HOST_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return a & b; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator||(PackMask a, PackMask b) { return a | b; }
+  CROSSBEAM_HOST_INLINE friend PackMask operator!(PackMask a) {
+    if constexpr (N == 1)
+      return {!a.v};
+    else
+      return {~a.v};
+  }
+  CROSSBEAM_HOST_INLINE bool operator[]([[maybe_unused]] int lane) const {
+    if constexpr (N == 1)
+      return v;
+    else
+      return v[lane] != 0;
+  }
 
   CROSSBEAM_HOST_INLINE friend bool any(PackMask a) {
-    if constexpr (has_bits) {
+    if constexpr (N == 1) {
+      return a.v;
+    } else if constexpr (has_bits) {
       return a.bits() != 0;
     } else {
       Integer r = 0;
@@ -67,7 +98,9 @@ struct PackMask {
     }
   }
   CROSSBEAM_HOST_INLINE friend bool all(PackMask a) {
-    if constexpr (has_bits) {
+    if constexpr (N == 1) {
+      return a.v;
+    } else if constexpr (has_bits) {
       return (!a).bits() == 0;
     } else {
       Integer r = -1;
@@ -138,8 +171,18 @@ struct Pack {
   CROSSBEAM_HOST_INLINE void store(S* to) const {
     *reinterpret_cast<typename detail::VectorOf<S, N>::unaligned*>(to) = v;
   }
-  CROSSBEAM_HOST_INLINE S operator[](int lane) const { return v[lane]; }
-  CROSSBEAM_HOST_INLINE void set(int lane, S value) { v[lane] = value; }
+  CROSSBEAM_HOST_INLINE S operator[]([[maybe_unused]] int lane) const {
+    if constexpr (N == 1)
+      return v;
+    else
+      return v[lane];
+  }
+  CROSSBEAM_HOST_INLINE void set([[maybe_unused]] int lane, S value) {
+    if constexpr (N == 1)
+      v = value;
+    else
+      v[lane] = value;
+  }
 
   CROSSBEAM_HOST_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
   CROSSBEAM_HOST_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
@@ -159,9 +202,17 @@ struct Pack {
 
   CROSSBEAM_HOST_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
 
-  CROSSBEAM_HOST_INLINE friend Pack magnitude(Pack a) { return Vector(Bits(a.v) & ~sign_bits()); }
+  CROSSBEAM_HOST_INLINE friend Pack magnitude(Pack a) {
+    if constexpr (N == 1)
+      return std::abs(a.v);
+    else
+      return Vector(Bits(a.v) & ~sign_bits());
+  }
   CROSSBEAM_HOST_INLINE friend Pack times_sign(Pack a, Pack b) {
-    return Vector(Bits(a.v) ^ (Bits(b.v) & sign_bits()));
+    if constexpr (N == 1)
+      return std::signbit(b.v) ? -a.v : a.v;
+    else
+      return Vector(Bits(a.v) ^ (Bits(b.v) & sign_bits()));
   }
 
   /// Square root by the vector unit itself, so that no compiler flag is needed. (The masked forms:
@@ -200,22 +251,22 @@ struct Pack {
   template <class Op>
   CROSSBEAM_HOST_INLINE friend Pack per_lane(Pack a, Op op) {
     Pack r;
-    for (int i = 0; i < N; ++i) r.v[i] = op(a.v[i]);
+    for (int i = 0; i < N; ++i) r.set(i, static_cast<S>(op(a[i])));
     return r;
   }
 
   // Lane after lane, in their order. Written out, for g++ -O2 runs a loop through memory.
   CROSSBEAM_HOST_INLINE friend S lane_maximum(Pack a) {
-    return [a]<int... I>(std::integer_sequence<int, I...>) {
-      S r = a.v[0];
-      ((r = a.v[I] > r ? a.v[I] : r), ...);
+    return [a]<int... k>(std::integer_sequence<int, k...>) {
+      S r = a[0];
+      ((r = a[k] > r ? a[k] : r), ...);
       return r;
     }(std::make_integer_sequence<int, N>());
   }
   CROSSBEAM_HOST_INLINE friend S lane_sum(Pack a) {
-    return [a]<int... I>(std::integer_sequence<int, I...>) {
-      S r = a.v[0];
-      ((r += a.v[I + 1]), ...);
+    return [a]<int... k>(std::integer_sequence<int, k...>) {
+      S r = a[0];
+      ((r += a[k + 1]), ...);
       return r;
     }(std::make_integer_sequence<int, N - 1>());
   }
@@ -223,70 +274,8 @@ struct Pack {
  private:
   using Bits = typename Mask::Vector;
   CROSSBEAM_HOST_INLINE static Bits sign_bits() {
-    return Bits{} | std::numeric_limits<typename Mask::Integer>::min();
+    return Bits{} | (std::numeric_limits<typename Mask::Integer>::min)();
   }
-};
-
-/// One lane is a plain number: g++ 12 miscompiles masks of one-element vectors from -O2 on (a
-/// stopped plate was pushed on by its friction, V-CONT-22), and other compilers have no vectors.
-template <class S>
-struct PackMask<S, 1> {
-  bool v;
-
-  CROSSBEAM_HOST_INLINE friend PackMask operator&(PackMask a, PackMask b) { return {a.v && b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator|(PackMask a, PackMask b) { return {a.v || b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator&&(PackMask a, PackMask b) { return {a.v && b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator||(PackMask a, PackMask b) { return {a.v || b.v}; }
-  CROSSBEAM_HOST_INLINE friend PackMask operator!(PackMask a) { return {!a.v}; }
-  CROSSBEAM_HOST_INLINE bool operator[](int) const { return v; }
-  CROSSBEAM_HOST_INLINE friend bool any(PackMask a) { return a.v; }
-  CROSSBEAM_HOST_INLINE friend bool all(PackMask a) { return a.v; }
-};
-
-template <class S>
-struct Pack<S, 1> {
-  using Value = S;
-  using Mask = PackMask<S, 1>;
-  S v;
-
-  Pack() = default;
-  template <class A>
-    requires std::is_arithmetic_v<A>
-  CROSSBEAM_HOST_INLINE Pack(A s) : v(static_cast<S>(s)) {}
-
-  CROSSBEAM_HOST_INLINE static Pack load(const S* from) { return *from; }
-  CROSSBEAM_HOST_INLINE void store(S* to) const { *to = v; }
-  CROSSBEAM_HOST_INLINE S operator[](int) const { return v; }
-  CROSSBEAM_HOST_INLINE void set(int, S value) { v = value; }
-
-  CROSSBEAM_HOST_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
-  CROSSBEAM_HOST_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
-  CROSSBEAM_HOST_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
-  CROSSBEAM_HOST_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
-  CROSSBEAM_HOST_INLINE friend Pack operator-(Pack a) { return -a.v; }
-  CROSSBEAM_HOST_INLINE friend Pack operator+(Pack a) { return a; }
-  CROSSBEAM_HOST_INLINE Pack& operator+=(Pack b) { return v += b.v, *this; }
-  CROSSBEAM_HOST_INLINE Pack& operator-=(Pack b) { return v -= b.v, *this; }
-  CROSSBEAM_HOST_INLINE Pack& operator*=(Pack b) { return v *= b.v, *this; }
-
-  CROSSBEAM_HOST_INLINE friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
-  CROSSBEAM_HOST_INLINE friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
-  CROSSBEAM_HOST_INLINE friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
-  CROSSBEAM_HOST_INLINE friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
-  CROSSBEAM_HOST_INLINE friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
-
-  CROSSBEAM_HOST_INLINE friend Pack select(Mask m, Pack a, Pack b) { return m.v ? a : b; }
-  CROSSBEAM_HOST_INLINE friend Pack magnitude(Pack a) { return std::abs(a.v); }
-  CROSSBEAM_HOST_INLINE friend Pack times_sign(Pack a, Pack b) {
-    return std::signbit(b.v) ? -a.v : a.v;
-  }
-  CROSSBEAM_HOST_INLINE friend Pack sqrt(Pack a) { return std::sqrt(a.v); }
-  template <class Op>
-  CROSSBEAM_HOST_INLINE friend Pack per_lane(Pack a, Op op) {
-    return static_cast<S>(op(a.v));
-  }
-  CROSSBEAM_HOST_INLINE friend S lane_maximum(Pack a) { return a.v; }
-  CROSSBEAM_HOST_INLINE friend S lane_sum(Pack a) { return a.v; }
 };
 
 template <class S, int N>

@@ -1,10 +1,10 @@
 #pragma once
 /// @file
-/// The energy-consistent crossed-beam cell: two crimped yarns, exact kinematics, joined by a contact
-/// beam that presses but does not pull (unilateral, the default) or does both (bilateral, the paper's
-/// literal beam 3, with a status because it has no unique solution in compression).
-/// Theory, theorems and their proofs: docs/theory/cell.md. Sources: paper section 4.1; the energy is
-/// our completion of it.
+/// The energy-consistent crossed-beam cell: two crimped yarns with exact kinematics are joined by a
+/// contact beam that presses but does not pull (unilateral, the default) or does both (bilateral,
+/// the paper's literal beam 3, with a status because it has no unique solution in compression).
+/// Theory, theorems and their proofs: docs/theory/cell.md. The source is section 4.1 of the paper;
+/// the energy is our completion of it.
 ///
 /// Units (any consistent set): force kN, length mm, energy kN mm, stiffness kN/mm.
 /// Sign: w1, w2 are the increments of the yarns' crimp heights; the paper's u3 = w1, u4 = -w2.
@@ -19,12 +19,38 @@
 
 namespace crossbeam {
 
+/// Numbers of the cell's solver that no theory fixes.
+namespace cell_constants {
+
+/// Least slope of a vertical force by its height, over ka [-], where a cell is followed, [C-14],
+/// and where the start shares out the gap, [C-5]. A slack yarn without bending has the slope zero:
+/// its height has lost its spring and would move without bound. A larger number slows the heights
+/// of slack yarns down, a smaller one leaves the correction to `largest_height_step`.
+inline constexpr double least_slope = 1e-6;
+
+/// Least slope of a vertical force by its height, over ka [-], in a Newton sweep, [C-4]. It keeps
+/// the quotient defined where a straight yarn without bending has the slope zero; it lies at the
+/// rounding of ka, so that it changes no other state. The fixed point does not depend on it.
+inline constexpr double least_sweep_slope = 1e-14;
+
+/// Largest step of a followed height, over L3 [-], [C-14]. At the time steps of a drape heights
+/// move by 1e-4 of that; a cell that is struck harder is off for some steps instead of leaving its
+/// branch.
+inline constexpr double largest_height_step = 0.125;
+
+/// Newton sweeps before a cell says not_converged [-]. Random fabrics need ten at most (V-CELL-11);
+/// a larger limit only delays the answer of cells that have none.
+inline constexpr int most_sweeps = 50;
+
+}  // namespace cell_constants
+
 enum class CellStatus {
   converged,
   not_converged,       ///< the iteration did not reach its tolerance
-  unstable,            ///< no stable equilibrium on the branch followed (bilateral, second order)
+  unstable,            ///< the branch that was traced has no stable equilibrium (bilateral, second
+                       ///< order)
   outside_kinematics,  ///< a yarn is shortened to nothing or drawn out beyond all numbers, or the
-                       ///< input is not a number
+                       ///< input is NaN
 };
 
 /// What a cell answers to the elongations (u1, u2) of its yarns.
@@ -47,7 +73,7 @@ struct YarnForces {
   T F1, F2;
 };
 
-/// What following a cell needs of one yarn at its last height.
+/// What following a cell needs of one yarn at its last height, tag [C-14].
 template <class T>
 struct FollowedYarn {
   T g, D;     ///< vertical force and its derivative by the height
@@ -62,9 +88,15 @@ struct CrimpHeights {
 
 /// How far the equilibrium is iterated.
 struct SolverControl {
-  int sweeps = 0;  ///< > 0: exactly that many Newton sweeps, no test. 0: until converged.
-  static constexpr SolverControl converged() { return {0}; }
+  static constexpr int until_converged = 0;
+
+  int sweeps = until_converged;  ///< exactly that many Newton sweeps without a test, or
+                                 ///< until_converged
+  static constexpr SolverControl converged() { return {until_converged}; }
   static constexpr SolverControl fixed(int n) { return {n}; }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE constexpr bool is_fixed() const {
+    return sweeps != until_converged;
+  }
 };
 
 /// One yarn's constants, derived once. R is a plain real type, Law its axial law.
@@ -77,7 +109,7 @@ struct YarnConstants {
   R least_start_squared;  ///< least height of a start, squared [mm^2], tag [C-5]
   R kb_c0, kb_s0;         ///< products that the forces need
   R kb_cc, kb_ss, kb_sc;  ///< and the tangents
-  R follow_floor;  ///< least tangent of `follow`: a height that lost its spring stays [kN/mm]
+  R follow_floor;         ///< least slope of a followed height [kN/mm]
 
   YarnConstants() = default;
   YarnConstants(const YarnParameters<R>& yarn, R height, R boundary_factor, Law axial_law)
@@ -98,7 +130,7 @@ struct YarnConstants {
     kb_cc = kb * c0 * c0;
     kb_ss = kb * s0 * s0;
     kb_sc = kb * s0 * c0;
-    follow_floor = R(1e-6) * ka;
+    follow_floor = R(cell_constants::least_slope) * ka;
   }
 };
 
@@ -153,13 +185,29 @@ struct YarnState {
   }
 };
 
-/// A cell: answers (u1, u2) with forces, on request with its energy and tangent.
+/// A cell: answers the elongations (u1, u2) of its yarns with their forces. With members `energy`
+/// and `tangent` as CrossedBeamCell's it has a potential, which a law then shows; without them it
+/// says in `fallback` of its solution whether another cell had to answer.
 template <class C, class T>
-concept UnitCell = requires(const C& cell, T u) {
+concept UnitCell = requires(const C& cell, const T& u, SolverControl control) {
   typename C::Real;
-  { cell.solve(u, u).forces } -> std::convertible_to<CellForces<T>>;
-  { cell.membrane_stiffness_bound() } -> std::convertible_to<typename C::Real>;
+  typename C::template Solution<T>;
+  { cell.parameters() } -> std::convertible_to<CellParameters<typename C::Real>>;
+  { cell.solve(u, u, control) } -> std::same_as<typename C::template Solution<T>>;
+  { cell.solve(u, u, control).forces } -> std::convertible_to<CellForces<T>>;
+  { cell.solve(u, u, control).status } -> std::convertible_to<CellStatus>;
+  { cell.membrane_stiffness_bound(typename C::Real()) } -> std::convertible_to<typename C::Real>;
 };
+
+/// A cell whose heights explicit dynamics can follow from step to step, tag [C-14].
+template <class C, class T>
+concept FollowedCell =
+    UnitCell<C, T> &&
+    requires(const C& cell, const T& u, const FollowedYarn<T>& y, CrimpHeights<T>& heights) {
+      { cell.evaluate_yarn(cell.warp(), u, u) } -> std::same_as<FollowedYarn<T>>;
+      { cell.evaluate_yarn(cell.weft(), u, u) } -> std::same_as<FollowedYarn<T>>;
+      { cell.follow(u, u, y, y, heights) } -> std::same_as<YarnForces<T>>;
+    };
 
 enum class Contact { unilateral, bilateral };
 
@@ -182,7 +230,7 @@ class CrossedBeamCell {
     yarn2_ = Yarn(parameters.weft, parameters.contact_length - H1,
                   parameters.bending_boundary_factor, std::move(weft));
     k3_ = parameters.contact_modulus * parameters.contact_area / parameters.contact_length;
-    follow_limit_ = parameters.contact_length / R(8);
+    follow_limit_ = R(cell_constants::largest_height_step) * parameters.contact_length;
     largest_elongation_ = CellRange<R>(parameters).largest_elongation();
     has_bending_ = yarn1_.kb > R(0) || yarn2_.kb > R(0);
   }
@@ -196,7 +244,7 @@ class CrossedBeamCell {
   /// Elongations from -L up to this one have an answer, tag [C-12].
   [[nodiscard]] CROSSBEAM_HOST_DEVICE R largest_elongation() const { return largest_elongation_; }
 
-  /// Cell in equilibrium; its energy and tangent are computed only when asked for.
+  /// A cell in equilibrium; its energy and tangent are computed only when asked for.
   template <class T>
   struct Solution {
     CellForces<T> forces{};
@@ -206,9 +254,10 @@ class CrossedBeamCell {
     T contact_stiffness{};  ///< B of [C-6]: k3 where the contact is closed, else 0
   };
 
-  /// Equilibrium for elongations u_i > -L_i.
-  /// Converged mode returns status not_converged / outside_kinematics instead of garbage; with a
-  /// fixed number of sweeps the caller owns that check (docs/theory/cell.md, error table).
+  /// Finds the equilibrium for elongations u_i > -L_i.
+  /// Iterated until converged, it answers with the status not_converged or outside_kinematics where
+  /// there is no right answer; with a fixed number of sweeps that check is the caller's
+  /// (docs/theory/cell.md, error table).
   /// With dual numbers the iteration runs on plain values and the derivatives come from final
   /// sweeps in the dual numbers, tag [C-7].
   template <class T>
@@ -230,14 +279,14 @@ class CrossedBeamCell {
       if constexpr (ContactKind == Contact::unilateral) {
         if (start(u1, u2, w1, w2)) {  // every lane slack and no bending: nothing to iterate
           finish(u1, u2, w1, w2, solution);
-          if (control.sweeps == 0) check(u1, u2, solution);
+          if (!control.is_fixed()) judge(u1, u2, solution);
           return solution;
         }
       } else {
         w1 = T(0);
         w2 = T(0);
       }
-      if (control.sweeps > 0) {
+      if (control.is_fixed()) {
         for (int k = 0; k < control.sweeps; ++k)
           solution.last_correction =
               sweep(u1, u2, w1, w2, solution.forces.q, solution.contact_stiffness);
@@ -246,15 +295,16 @@ class CrossedBeamCell {
         iterate(u1, u2, w1, w2, solution);
       }
       finish(u1, u2, w1, w2, solution);
-      if (control.sweeps == 0) check(u1, u2, solution);
+      if (!control.is_fixed()) judge(u1, u2, solution);
       return solution;
     }
   }
 
-  /// @name Following the heights from one time step to the next, tag [C-14]: one residual evaluation
-  /// at the given heights, forces linearised to the heights of the equilibrium, which replace the
-  /// given ones. The error is of second order in the correction. The given heights are those of a
-  /// nearby strain, at first those of solve(). Two parts, so that each makes a short loop.
+  /// @name Following the heights from one time step to the next, tag [C-14] The residual is
+  /// evaluated once, at the given heights; the forces are linearised to the heights of the
+  /// equilibrium, which replace the given ones. The error is of second order in the correction. The
+  /// given heights are those of a nearby strain, at first those of solve(). There are two parts, so
+  /// that each makes a short loop.
   /// @{
   template <class T>
   CROSSBEAM_INLINE static FollowedYarn<T> evaluate_yarn(const Yarn& yarn, const T& u, const T& w) {
@@ -282,7 +332,7 @@ class CrossedBeamCell {
     add_residual(u1, u2, out.F1, out.F2);
     return out;
   }
-  /// Both parts at once.
+  /// Does both parts at once.
   template <class T>
   CROSSBEAM_INLINE YarnForces<T> follow(const T& u1, const T& u2, CrimpHeights<T>& heights) const
     requires(ContactKind == Contact::unilateral && ScalarTraits<T>::derivative_order == 0)
@@ -312,7 +362,7 @@ class CrossedBeamCell {
     // A straight yarn without bending has k_hh = 0 and k_Lh = 0 while the contact is open. (The
     // bilateral contact is never open, and det < 0 is the honest answer where it is unstable.)
     if constexpr (ContactKind == Contact::unilateral)
-      det = maximum(det, T(std::numeric_limits<R>::min()));
+      det = maximum(det, T((std::numeric_limits<R>::min)()));
     const T inv = T(1) / det;
     const T zero(0);
     return {y1.k_LL(yarn1_) - m1 * m1 * (h2 + B) * inv + select(u1 < zero, T(kres()), zero),
@@ -342,14 +392,15 @@ class CrossedBeamCell {
     return T(R(0.5) * kres()) * shortening * shortening;
   }
 
-  /// l0^2 - (L + u)^2: square of the height at which the yarn is as long as unstressed; negative when
-  /// even the straight yarn is stretched.
+  /// l0^2 - (L + u)^2, the square of the height at which the yarn is as long as unstressed [mm^2].
+  /// It is negative when even the straight yarn is stretched.
   template <class T>
   CROSSBEAM_INLINE static T spare_height_squared(const Yarn& y, const T& u) {
     return T(y.H * y.H) - u * (T(R(2) * y.L) + u);
   }
 
-  /// Closed-form start on the convex branch, tag [C-5]. Returns true when nothing has to be iterated.
+  /// Closed-form start on the convex branch, tag [C-5].
+  /// @return true when nothing has to be iterated
   template <class T>
   CROSSBEAM_INLINE bool start(const T& u1, const T& u2, T& w1, T& w2) const {
     using std::sqrt;
@@ -360,9 +411,9 @@ class CrossedBeamCell {
     const T gap = maximum(-spare, T(0));
     const T x1 = hs1 + T(0.5) * gap, x2 = hs2 + T(0.5) * gap;
     const T k1 = maximum(T(yarn1_.ka / (yarn1_.l0 * yarn1_.l0)) * (T(1.5) * x1 * x1 - T(0.5) * a1),
-                         T(R(1e-6) * yarn1_.ka));
+                         T(R(cell_constants::least_slope) * yarn1_.ka));
     const T k2 = maximum(T(yarn2_.ka / (yarn2_.l0 * yarn2_.l0)) * (T(1.5) * x2 * x2 - T(0.5) * a2),
-                         T(R(1e-6) * yarn2_.ka));
+                         T(R(cell_constants::least_slope) * yarn2_.ka));
     const T f = k2 / (k1 + k2);
     w1 = hs1 + f * gap - T(yarn1_.H);
     w2 = hs2 + (T(1) - f) * gap - T(yarn2_.H);
@@ -379,8 +430,8 @@ class CrossedBeamCell {
     const T g1 = y1.vertical_force(yarn1_), g2 = y2.vertical_force(yarn2_);
     T D1 = y1.k_hh(yarn1_), D2 = y2.k_hh(yarn2_);
     if constexpr (ContactKind == Contact::unilateral) {
-      D1 = maximum(D1, T(R(1e-14) * yarn1_.ka));
-      D2 = maximum(D2, T(R(1e-14) * yarn2_.ka));
+      D1 = maximum(D1, T(R(cell_constants::least_sweep_slope) * yarn1_.ka));
+      D2 = maximum(D2, T(R(cell_constants::least_sweep_slope) * yarn2_.ka));
     }
     const T D12 = D1 * D2, k3 = T(k3_);
     q = k3 * ((g1 - w1 * D1) * D2 + (g2 - w2 * D2) * D1) / (D12 + k3 * (D1 + D2));
@@ -404,8 +455,7 @@ class CrossedBeamCell {
     const R eps = std::numeric_limits<R>::epsilon();
     // The last correction is squared by the quadratic convergence: eps^(3/4) leaves eps^(3/2).
     const R tolerance = parameters_.contact_length * sqrt(eps) * sqrt(sqrt(eps));
-    constexpr int limit = 50;
-    for (int k = 1; k <= limit; ++k) {
+    for (int k = 1; k <= cell_constants::most_sweeps; ++k) {
       solution.last_correction =
           sweep(u1, u2, w1, w2, solution.forces.q, solution.contact_stiffness);
       solution.sweeps = k;
@@ -422,8 +472,8 @@ class CrossedBeamCell {
     out.F1 = y1.horizontal_force(yarn1_);
     out.F2 = y2.horizontal_force(yarn2_);
     if (ContactKind == Contact::unilateral && !has_bending_) {
-      // A crimped yarn without bending and without contact carries exactly nothing: the closed form,
-      // not the rounding of its length.
+      // A crimped yarn without bending and without contact carries exactly nothing: the closed
+      // form, not the rounding of its length.
       const auto open = solution.contact_stiffness <= T(0);
       out.F1 = select(open && spare_height_squared(yarn1_, u1) > T(0), T(0), out.F1);
       out.F2 = select(open && spare_height_squared(yarn2_, u2) > T(0), T(0), out.F2);
@@ -460,7 +510,7 @@ class CrossedBeamCell {
 
   /// Status of a solution that was iterated to convergence.
   template <class T>
-  CROSSBEAM_HOST_DEVICE void check(const T& u1, const T& u2, Solution<T>& solution) const {
+  CROSSBEAM_HOST_DEVICE void judge(const T& u1, const T& u2, Solution<T>& solution) const {
     const auto within = [this](const T& u, R L) {
       return all(u > T(-L)) && all(u < T(largest_elongation_));
     };

@@ -56,11 +56,11 @@ struct CellParameters {
   }
 };
 
-/// The numbers of a cell as the solver forms them.
+/// The extreme stiffnesses and lengths of a cell, as its solver forms them.
 template <class R>
 struct CellRange {
   R least_stiffness;              ///< of the yarns along their chords and of the contact
-  R total_stiffness;              ///< these and bending added: not a number if one of them is none
+  R total_stiffness;              ///< these and bending added: NaN if one of them is NaN
   R softest_yarn, stiffest_yarn;  ///< along their chords; the stiffest also in bending
   R least_length, largest_length;
 
@@ -91,8 +91,8 @@ struct CellRange {
   /// form them, tag [C-12].
   [[nodiscard]] bool workable() const {
     const R eps = std::numeric_limits<R>::epsilon();
-    const R low = std::numeric_limits<R>::min() / (eps * eps * eps);
-    const R high = std::numeric_limits<R>::max() * eps;
+    const R low = (std::numeric_limits<R>::min)() / (eps * eps * eps);
+    const R high = (std::numeric_limits<R>::max)() * eps;
     const R k = least_stiffness, K = total_stiffness, l = least_length, L = largest_length;
     return minimum(R(1), l) * k * k * k >= low && k * l * l * l >= low && k >= low * L * L &&
            maximum(R(1), L) * K * K * K <= high && K * L * L * L <= high;
@@ -104,16 +104,16 @@ struct CellRange {
     return stiffest_yarn * sqrt(std::numeric_limits<R>::epsilon()) <= softest_yarn;
   }
 
-  /// Elongations below it keep forces and energies finite, tag [C-12].
+  /// Elongations below this one keep forces and energies finite, tag [C-12] [mm].
   [[nodiscard]] R largest_elongation() const {
     using std::sqrt;
-    const R high = std::numeric_limits<R>::max() * std::numeric_limits<R>::epsilon();
+    const R high = (std::numeric_limits<R>::max)() * std::numeric_limits<R>::epsilon();
     const R K = total_stiffness;
     return minimum(minimum(sqrt(high), sqrt(high / K)), high / (K * K * K));
   }
 };
 
-/// Throws InputError naming the field, its value, unit and admissible range.
+/// Throws InputError that names the field, its value, unit and admissible range.
 /// @param prefix the caller's name of the parameter set, for instance "cell".
 template <class R>
 void validate(const CellParameters<R>& p, const std::string& prefix = "cell") {

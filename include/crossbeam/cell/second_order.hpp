@@ -1,9 +1,9 @@
 #pragma once
 /// @file
 /// The cell as the paper prints it (Eq. 24-25): second-order theory on the unstressed geometry,
-/// K = K_E + K_G(F_warp, F_weft), iterated. It has no potential, and its iteration diverges for yarns
-/// shortened by some per cent; such answers carry a status and the energy cell's forces instead.
-/// Theory, region of divergence and defects: docs/theory/cell.md, [C-11].
+/// where K = K_E + K_G(F_warp, F_weft) is iterated. It has no potential, and its iteration diverges
+/// for yarns shortened by some per cent; such answers carry a status and the energy cell's forces
+/// instead. Theory, region of divergence and defects: docs/theory/cell.md, [C-11].
 
 #include "crossbeam/cell/crossed_beam.hpp"
 
@@ -45,9 +45,8 @@ class SecondOrderCell {
     const R L3 = fallback_.parameters().contact_length;
     const T tolerance = T(R(8) * std::numeric_limits<R>::epsilon()) *
                         (T(y1.ka) * magnitude(u1) + T(y2.ka) * magnitude(u2));
-    constexpr int limit = 50;
     decltype(u1 == u1) stable{}, converged{};
-    for (int k = 1; k <= limit; ++k) {
+    for (int k = 1; k <= cell_constants::most_sweeps; ++k) {
       const Stiffness<T> a(y1, T(kappa_) * out.F1), b(y2, T(kappa_) * out.F2);
       const T det = a.hh * b.hh + k3 * (a.hh + b.hh);
       const T r1 = a.Lh * u1, r2 = b.Lh * u2;

@@ -6,6 +6,7 @@
 #include "crossbeam/base/dual.hpp"
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/contact/contact_law.hpp"
+#include "crossbeam/contact/start_check.hpp"
 #include "crossbeam/model/tool_contact.hpp"
 #include "crossbeam/tools/surface.hpp"
 
@@ -29,6 +30,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       : Base(std::move(motion)),
         shape_(std::move(shape)),
         parameters_(parameters),
+        nodes_(nodes),
         batches_((nodes + lanes - 1) / lanes),
         stick_(nodes),
         friction_(nodes),
@@ -39,9 +41,46 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     validate(parameters);
   }
 
-  using Base::add_forces;
+  /// Nodes inside the tool where it is now.
+  [[nodiscard]] StartPenetration start_penetration(const NodalState<R>& state) const {
+    StartPenetration out;
+    const T zero(R(0));
+    for (int n = 0; n < state.node_count; n += lanes) {
+      const T area = T::load(state.area.data() + n);
+      Vec3<Wide> x = load<Wide>(state.x, n);
+      x.z = x.z - Wide(this->now_.z);
+      const T gap = shape_.gap(convert<T>(x)).gap;
+      const auto inside = (gap < zero) && (area > zero);
+      if (!any(inside)) continue;
+      const T depth = select(inside, -gap, zero), k = constant<T>(parameters_.penalty) * area;
+      const T energy = penalty_force(depth, zero, k, zero, inside).energy;
+      for (int lane = 0; lane < lanes; ++lane) {
+        const double d = static_cast<double>(depth[lane]);
+        if (!(d > 0)) continue;
+        ++out.nodes;
+        if (d <= out.depth) continue;
+        out.deepest = n + lane;
+        out.depth = d;
+        out.speed = std::sqrt(2 * static_cast<double>(energy[lane]) /
+                              static_cast<double>(state.mass[n + lane]));
+      }
+    }
+    return out;
+  }
+  /// What can be said before a run from `state`; nothing unless parameters.check_start.
+  /// @throws InputError (require_gentle, require_no_gap)
+  void check_start(const NodalState<R>& state) const override {
+    if (!parameters_.check_start) return;
+    require_no_gap(smallest_width(shape_), state.widest_element);
+    require_gentle(start_penetration(state));
+  }
 
-  void begin_forces(int parts, int flight = 0) override {
+  using Base::add_forces;
+  using Base::book_nodes;
+
+  [[nodiscard]] std::optional<int> node_count() const override { return nodes_; }
+
+  void begin_forces(int parts, int flight) override {
     Base::begin_forces(parts, flight);
     at_start_ = !started_;
     started_ = true;
@@ -131,67 +170,76 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   void add_tangent(const NodalState<R>& state, int tool_row,
                    TangentEntries& tangent) const override {
     using D = Dual<R, 6>;  // position and velocity of the node against the tool
-    for (int n = 0; n < state.node_count; ++n) {
-      Vec3<D> p, v;
-      const Vec3<R> x = seen(state.x.get(n), this->now_.z), rate = state.v.get(n);
-      p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
-      v = {D::variable(rate.x, 3), D::variable(rate.y, 4),
-           D::variable(rate.z - R(this->now_.v_plus), 5)};
-      const SurfaceGap<D> at = shape_.gap(p);
-      if (!(at.gap < D(R(0)))) continue;
-      const D k(R(parameters_.penalty) * state.area[n]), m(state.mass[n]);
-      using std::sqrt;
-      const Normal<D> normal = normal_force(-at.gap, k, sqrt(k * m), -dot(v, at.normal), true);
-      const Vec3<D> force = normal.pressure * at.normal +
-                            smooth_friction(slip<false>(v, D(R(0)), at.normal), normal.pressure);
-      const D component[3] = {force.x, force.y, force.z};
-      Eigen::Matrix3d K, C;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          K(i, j) = -static_cast<double>(component[i].d[j]);
-          C(i, j) = -static_cast<double>(component[i].d[3 + j]);
-        }
-      add_blocks(tangent.stiffness, n, tool_row, K);
-      if (tangent.with_damping) add_blocks(tangent.damping, n, tool_row, C);
-    }
+    if constexpr (!Surface<Shape, D>)
+      throw no_tangent();
+    else
+      for (int n = 0; n < state.node_count; ++n) {
+        Vec3<D> p, v;
+        const Vec3<R> x = seen(state.x.get(n), this->now_.z), rate = state.v.get(n);
+        p = {D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
+        v = {D::variable(rate.x, 3), D::variable(rate.y, 4),
+             D::variable(rate.z - R(this->now_.v_plus), 5)};
+        const SurfaceGap<D> at = shape_.gap(p);
+        if (!(at.gap < D(R(0)))) continue;
+        const D k(R(parameters_.penalty) * state.area[n]), m(state.mass[n]);
+        using std::sqrt;
+        const NormalForce<D> normal =
+            penalty_force(-at.gap, -dot(v, at.normal), k, sqrt(k * m), true);
+        const Vec3<D> force =
+            normal.pressure * at.normal + smooth_friction(tangential<false>(v, at.normal),
+                                                          friction_limit(normal.pressure),
+                                                          constant<D>(parameters_.slip_speed));
+        const D component[3] = {force.x, force.y, force.z};
+        Eigen::Matrix3d K, C;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            K(i, j) = -static_cast<double>(component[i].d[j]);
+            C(i, j) = -static_cast<double>(component[i].d[3 + j]);
+          }
+        add_blocks(tangent.stiffness, n, tool_row, K);
+        if (tangent.with_damping) add_blocks(tangent.damping, n, tool_row, C);
+      }
   }
 
   void come_to_rest(const NodalState<R>& state) override {
     rest_ = state.x;
     rest_z_ = this->now_.z;
-    if (parameters_.friction_model != Friction::elastic_stick)
-      std::fill(stick_.x.begin(), stick_.x.end(), R(0));
   }
 
   double add_rest_forces(NodalState<R>& state, int tool_row,
                          TangentEntries* tangent) const override {
     using D = Dual<R, 3>;
     double sum = 0;
-    for (int n = 0; n < state.node_count; ++n) {
-      const Vec3<R> x = seen(state.x.get(n), this->now_.z), x0 = seen(rest_.get(n), rest_z_);
-      const Vec3<R> xi0 = stick_.get(n);
-      const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
-      const SurfaceGap<D> at = shape_.gap(p);
-      if (!(at.gap < D(R(0)))) continue;
-      const D k(R(parameters_.penalty) * state.area[n]), none(R(0));
-      const Normal<D> normal = normal_force(-at.gap, k, none, none, true);
-      Vec3<D> force = normal.pressure * at.normal;
-      if (parameters_.friction_model == Friction::elastic_stick) {
-        const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
-                         D(xi0.z) + p.z - D(x0.z)};
-        force =
-            force + stick_friction<false>(xi, at.normal, k, none, Vec3<D>{}, normal.pressure).force;
+    if constexpr (!Surface<Shape, D>)
+      throw no_tangent();
+    else
+      for (int n = 0; n < state.node_count; ++n) {
+        const Vec3<R> x = seen(state.x.get(n), this->now_.z), x0 = seen(rest_.get(n), rest_z_);
+        const Vec3<R> xi0 = stick_.get(n);
+        const Vec3<D> p{D::variable(x.x, 0), D::variable(x.y, 1), D::variable(x.z, 2)};
+        const SurfaceGap<D> at = shape_.gap(p);
+        if (!(at.gap < D(R(0)))) continue;
+        const D k(R(parameters_.penalty) * state.area[n]), none(R(0));
+        const NormalForce<D> normal = penalty_force(-at.gap, none, k, none, true);
+        Vec3<D> force = normal.pressure * at.normal;
+        if (parameters_.friction_model == Friction::elastic_stick) {
+          const Vec3<D> xi{D(xi0.x) + p.x - D(x0.x), D(xi0.y) + p.y - D(x0.y),
+                           D(xi0.z) + p.z - D(x0.z)};
+          force = force + stick_friction<false>(xi, Vec3<D>{}, at.normal,
+                                                constant<D>(parameters_.stick_ratio) * k, none,
+                                                friction_limit(normal.pressure))
+                              .force;
+        }
+        const Vec3<R> f{force.x.value, force.y.value, force.z.value};
+        state.f.set(n, state.f.get(n) + f);
+        sum += static_cast<double>(f.z);
+        if (!tangent) continue;
+        const D component[3] = {force.x, force.y, force.z};
+        Eigen::Matrix3d K;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) K(i, j) = -static_cast<double>(component[i].d[j]);
+        add_blocks(tangent->stiffness, n, tool_row, K);
       }
-      const Vec3<R> f{force.x.value, force.y.value, force.z.value};
-      state.f.set(n, state.f.get(n) + f);
-      sum += static_cast<double>(f.z);
-      if (!tangent) continue;
-      const D component[3] = {force.x, force.y, force.z};
-      Eigen::Matrix3d K;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) K(i, j) = -static_cast<double>(component[i].d[j]);
-      add_blocks(tangent->stiffness, n, tool_row, K);
-    }
     return sum;
   }
 
@@ -226,7 +274,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
       at = shape_.gap(p);
     const auto touching = (at.gap < zero) && real;
     if (!any(touching)) {
-      const T clearance = select(real, at.clearance, T(std::numeric_limits<R>::max()));
+      const T clearance = select(real, at.clearance, T((std::numeric_limits<R>::max)()));
       // `travel` grows by what node and tool move together: it must use up the clearance first
       // [F-4].
       safe_until_[b] = travel + static_cast<double>(-lane_maximum(-clearance));
@@ -236,36 +284,35 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     active_[b] = 1;
     const T m = T::load(state.mass.data() + n);
     const Vec3<T> v_half = load<T>(state.v, n), v_now = load<T>(state.v_predicted, n);
-    const T penetration = select(touching, -at.gap, zero);
-    const T k = T(static_cast<R>(parameters_.penalty)) * area;
+    const T depth = select(touching, -at.gap, zero);
+    const T k = constant<T>(parameters_.penalty) * area;
     const T closing = -(along_normal<Flat>(v_now, at.normal) - step.velocity_now * at.normal.z);
     using std::sqrt;
     const T root = sqrt(k * m);
-    const Normal<T> normal = normal_force(penetration, k, root, closing, touching);
+    const NormalForce<T> normal = penalty_force(depth, closing, k, root, touching);
+    const T limit = friction_limit(normal.pressure);
 
-    Vec3<T> t, xi = load<T>(stick_, n);
+    Vec3<T> t;
     if (parameters_.friction_model == Friction::smooth) {
-      t = smooth_friction(slip<Flat>(v_now, step.velocity_now, at.normal), normal.pressure);
+      t = smooth_friction(slip<Flat>(v_now, step.velocity_now, at.normal), limit,
+                          constant<T>(parameters_.slip_speed));
     } else if (parameters_.friction_model == Friction::elastic_stick) {
       const Vec3<T> slip_rate = slip<Flat>(v_half, step.velocity, at.normal);
-      const T c = minimum(
-          T(static_cast<R>(2 * parameters_.damping_ratio * std::sqrt(parameters_.stick_ratio))) *
-              root,
+      const T c_t = minimum(
+          constant<T>(2 * parameters_.damping_ratio * std::sqrt(parameters_.stick_ratio)) * root,
           m * step.half_over_dt);
-      const Stick<T> stick = stick_friction<Flat>(xi + step.slip_time * slip_rate, at.normal, k, c,
-                                                  slip_rate, normal.pressure);
+      const Vec3<T> xi = load<T>(stick_, n) + step.slip_time * slip_rate;
+      const StickFriction<T> stick = stick_friction<Flat>(
+          xi, slip_rate, at.normal, constant<T>(parameters_.stick_ratio) * k, c_t, limit);
       t = select_lanes(touching, stick.force);
-      const auto slips = stick.slips && touching;
-      xi = {select(slips, stick.slipped.x, stick.xi.x), select(slips, stick.slipped.y, stick.xi.y),
-            select(slips, stick.slipped.z, stick.xi.z)};
-      store(stick_, n, select_lanes(touching, xi));
-    } else {  // [F-3]
-      const Vec3<T> slip_rate = slip<Flat>(v_half, step.velocity, at.normal);
-      const T speed = sqrt(dot(slip_rate, slip_rate));
-      const T mu(static_cast<R>(parameters_.friction));
-      const T slip_speed(static_cast<R>(parameters_.slip_speed));
-      const T c = minimum(mu * normal.pressure / maximum(speed, slip_speed), m * step.half_over_dt);
-      t = select_lanes(touching, (zero - c) * slip_rate);
+      const Vec3<T> kept = {select(stick.slips, stick.slipped.x, stick.trial.x),
+                            select(stick.slips, stick.slipped.y, stick.trial.y),
+                            select(stick.slips, stick.slipped.z, stick.trial.z)};
+      store(stick_, n, select_lanes(touching, kept));
+    } else {
+      t = select_lanes(
+          touching, viscous_friction(slip<Flat>(v_half, step.velocity, at.normal), limit,
+                                     constant<T>(parameters_.slip_speed), m * step.half_over_dt));
     }
 
     const Vec3<T> force = normal.pressure * at.normal + t;
@@ -277,49 +324,22 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     sums.energy = sums.energy + normal.energy;
   }
 
-  /// Force, damping and energy of the penalty.
-  template <class S>
-  struct Normal {
-    S viscous, pressure, energy;
-  };
-
-  /// [F-1]; with a smoothing depth [F-5]. Damping never pulls: the total stays a pressure.
-  /// @param k penalty stiffness of the node; @param root sqrt(k m) with its mass
-  /// @param closing its speed into the tool
+  /// The law with this contact's constants: the node's penalty k and root = (k m)^(1/2).
   template <class S, class Mask>
-  CROSSBEAM_INLINE Normal<S> normal_force(const S& penetration, const S& k, const S& root,
-                                          const S& closing, const Mask& touching) const {
-    const S zero(R(0)), c = S(R(2 * parameters_.damping_ratio)) * root;
-    if (parameters_.smoothing > 0) {
-      const S e(static_cast<R>(parameters_.smoothing)), one(R(1));
-      const S u = minimum(penetration / e, one), over = penetration - e * u;
-      const S slope = u * u * (S(R(3)) - S(R(2)) * u);
-      const S elastic = k * (e * u * u * u * (one - S(R(0.5)) * u) + over);
-      const S energy = k * (e * e * u * u * u * u * (S(R(0.25)) - S(R(0.1)) * u) +
-                            over * (S(R(0.5)) * e + S(R(0.5)) * over));
-      const S viscous = select(touching, maximum(c * slope * closing, -elastic), zero);
-      return {viscous, elastic + viscous, energy};
-    }
-    const S elastic = k * penetration;
-    const S viscous = select(touching, maximum(c * closing, -elastic), zero);
-    return {viscous, elastic + viscous, S(R(0.5)) * elastic * penetration};
+  CROSSBEAM_INLINE NormalForce<S> penalty_force(const S& depth, const S& closing, const S& k,
+                                                const S& root, const Mask& touching) const {
+    const S c = constant<S>(2 * parameters_.damping_ratio) * root;
+    if (parameters_.smoothing > 0)
+      return normal_force(depth, closing, k, c, constant<S>(parameters_.smoothing), touching);
+    return normal_force(depth, closing, k, c, touching);
   }
-
-  /// Component along the normal, which in a flat part is +-z.
-  template <bool Flat, class S>
-  CROSSBEAM_INLINE static S along_normal(const Vec3<S>& v, const Vec3<S>& normal) {
-    if constexpr (Flat)
-      return v.z * normal.z;
-    else
-      return dot(v, normal);
+  template <class S>
+  CROSSBEAM_INLINE S friction_limit(const S& pressure) const {
+    return constant<S>(parameters_.friction) * pressure;
   }
-  /// The part of v in the tangent plane.
-  template <bool Flat, class S>
-  CROSSBEAM_INLINE static Vec3<S> tangential(const Vec3<S>& v, const Vec3<S>& normal) {
-    if constexpr (Flat)
-      return {v.x, v.y, S(R(0))};
-    else
-      return v - dot(v, normal) * normal;
+  template <class S>
+  CROSSBEAM_INLINE static S constant(double value) {
+    return S(static_cast<R>(value));
   }
 
   /// Velocity of a node against the tool, in the tangent plane.
@@ -329,40 +349,9 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
     return tangential<Flat>(v, normal);
   }
 
-  template <class S>
-  struct Stick {
-    Vec3<S> force, xi, slipped;  ///< slipped: the elastic slip that belongs to a force on the cone
-    decltype(std::declval<S>() > std::declval<S>()) slips;
-  };
-
-  /// [F-2]
-  /// @param xi elastic slip so far
-  template <bool Flat, class S>
-  CROSSBEAM_INLINE Stick<S> stick_friction(const Vec3<S>& xi, const Vec3<S>& normal, const S& k,
-                                           const S& c, const Vec3<S>& slip_rate,
-                                           const S& pressure) const {
-    using std::sqrt;
-    const S tiny(std::numeric_limits<R>::min());
-    const S kt = S(static_cast<R>(parameters_.stick_ratio)) * k;
-    Stick<S> out;
-    out.xi = tangential<Flat>(xi, normal);
-    Vec3<S> t = S(R(-1)) * (kt * out.xi + c * slip_rate);
-    const S squared = dot(t, t);
-    const S size = sqrt(maximum(squared, tiny));  // a derivative of it at zero
-    const S limit = S(static_cast<R>(parameters_.friction)) * pressure;
-    out.slips = size > limit;
-    out.force = select(out.slips, limit / size, S(R(1))) * t;
-    const S inv_kt = S(R(-1)) / maximum(kt, tiny);
-    out.slipped = inv_kt * out.force;
-    return out;
-  }
-
-  /// [F-6]
-  template <class S>
-  CROSSBEAM_INLINE Vec3<S> smooth_friction(const Vec3<S>& slip_rate, const S& pressure) const {
-    using std::sqrt;
-    const S v_s(static_cast<R>(parameters_.slip_speed)), mu(static_cast<R>(parameters_.friction));
-    return (-(mu * pressure) / sqrt(dot(slip_rate, slip_rate) + v_s * v_s)) * slip_rate;
+  static InputError no_tangent() {
+    return {"tool surface", "not for dual numbers", "",
+            "gap(Vec3<T>) for any scalar T, where a tangent or forces at rest are asked for"};
   }
 
   static void add_blocks(std::vector<TangentEntries::Entry>& list, int node, int tool_row,
@@ -375,7 +364,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
   }
 
   [[nodiscard]] double penalty() const {
-    return parameters_.penalty * std::max(1.0, parameters_.stick_ratio);
+    return parameters_.penalty * maximum(1.0, parameters_.stick_ratio);
   }
   /// A free tool moves against the nodes: each spring works on 1/m and its share of the tool's 1/M.
   [[nodiscard]] double sides(double areal_mass, double area) const {
@@ -401,7 +390,7 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
 
   Shape shape_;
   ContactParameters parameters_;
-  int batches_;
+  int nodes_, batches_;
   NodeVectors<R> stick_;     // elastic slip xi [mm]
   NodeVectors<R> friction_;  // force on the node [kN]
   NodeVectors<R> damping_;   // force on the node [kN]

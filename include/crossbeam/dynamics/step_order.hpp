@@ -4,6 +4,7 @@
 /// and how close steps in flight may follow each other. Theory: docs/theory/sweep.md, [S-3], [S-5],
 /// [S-6].
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/dynamics/thread_team.hpp"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ class StepOrder {
       for (int level = first; level < last; ++level) {
         if (band == 0 || level > first + 1) {
           const int finish_end = level + 1 == levels ? level + 1 : level;
-          places_.push_back({level, level + 1, level, std::max(level - 1, 0), finish_end});
+          places_.push_back({level, level + 1, level, maximum(level - 1, 0), finish_end});
         } else if (level > first) {
           places_.push_back({first, level + 1, level, level, level});
           places_.push_back({first, first, first, first - 1, first + 1});
@@ -84,9 +85,9 @@ class StepOrder {
     for (int p = 0; p < count; ++p)
       for (int l = places_[p].finish_begin; l < places_[p].finish_end; ++l) finished[l] = p;
     for (int p = 0; p < count; ++p)
-      for (int l = std::max(places_[p].stage - 1, 0);
-           l < std::max(places_[p].stage + 1, places_[p].clear_end); ++l)
-        lag_ = std::max(lag_, finished[l] - p);
+      for (int l = maximum(places_[p].stage - 1, 0);
+           l < maximum(places_[p].stage + 1, places_[p].clear_end); ++l)
+        lag_ = maximum(lag_, finished[l] - p);
   }
 
   int levels_ = 0, lag_ = 1;

@@ -7,12 +7,11 @@
 #include "crossbeam/base/error.hpp"
 #include "crossbeam/base/scalar.hpp"
 
-#include <Eigen/Core>
-#include <Eigen/LU>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace crossbeam {
@@ -40,15 +39,63 @@ inline double ring_radius(const std::vector<StencilNeighbour>& ring) {
   double size = 0;
   for (const auto& n : ring) {
     const double distance = std::hypot(n.along, n.across);
-    if (!std::isfinite(distance)) return 0;
-    size = std::max(size, distance);
+    if (!is_finite(distance)) return 0;
+    size = maximum(size, distance);
   }
   const double squared = size * size;
-  return squared >= Limits::min() / Limits::epsilon() &&
-                 squared <= Limits::max() * Limits::epsilon()
+  return squared >= (Limits::min)() / Limits::epsilon() &&
+                 squared <= (Limits::max)() * Limits::epsilon()
              ? size
              : 0;
 }
+
+/// P A Q = L U of a 5 x 5 matrix with complete pivoting.
+class FullPivoting {
+ public:
+  static constexpr int size = 5;
+  using Vector = std::array<double, size>;
+
+  explicit FullPivoting(const std::array<Vector, size>& matrix) : a_(matrix) {
+    double largest = 0;
+    for (int k = 0; k < size; ++k) {
+      int row = k, column = k;
+      for (int i = k; i < size; ++i)
+        for (int j = k; j < size; ++j)
+          if (std::abs(a_[i][j]) > std::abs(a_[row][column])) row = i, column = j;
+      row_[k] = row;
+      column_[k] = column;
+      std::swap(a_[k], a_[row]);
+      for (auto& r : a_) std::swap(r[k], r[column]);
+      largest = std::max(largest, std::abs(a_[k][k]));
+      is_regular_ = is_regular_ &&
+                    std::abs(a_[k][k]) > size * std::numeric_limits<double>::epsilon() * largest;
+      if (!is_regular_) return;
+      for (int i = k + 1; i < size; ++i) {
+        a_[i][k] /= a_[k][k];
+        for (int j = k + 1; j < size; ++j) a_[i][j] -= a_[i][k] * a_[k][j];
+      }
+    }
+  }
+  /// Whether every pivot is above the rounding of the largest.
+  [[nodiscard]] bool is_regular() const { return is_regular_; }
+
+  [[nodiscard]] Vector solve(Vector b) const {
+    for (int k = 0; k < size; ++k) std::swap(b[k], b[row_[k]]);
+    for (int k = 0; k < size; ++k)
+      for (int i = k + 1; i < size; ++i) b[i] -= a_[i][k] * b[k];
+    for (int k = size - 1; k >= 0; --k) {
+      for (int j = k + 1; j < size; ++j) b[k] -= a_[k][j] * b[j];
+      b[k] /= a_[k][k];
+    }
+    for (int k = size - 1; k >= 0; --k) std::swap(b[k], b[column_[k]]);
+    return b;
+  }
+
+ private:
+  std::array<Vector, size> a_;
+  std::array<int, size> row_{}, column_{};
+  bool is_regular_ = true;
+};
 
 }  // namespace detail
 
@@ -69,43 +116,44 @@ inline std::vector<StencilWeight> three_point_difference(
   if (!ahead || !behind) return {};
   const double a = ahead->along, b = -behind->along;
   const double wa = 2 / (a * (a + b)), wb = 2 / (b * (a + b));
-  if (!std::isfinite(wa + wb)) return {};
+  if (!is_finite(wa + wb)) return {};
   return {{behind->id, wb}, {centre, -(wa + wb)}, {ahead->id, wa}};
 }
 
 /// The same from any ring of five nodes or more around the centre: of all weights that are exact
 /// for every quadratic field, those closest to the fibre line, tag [B-3]. Empty when the ring does
 /// not determine them well.
-/// @tparam Number double; a template, so that only programs that bend compile the decomposition
-template <class Number = double>
-std::vector<StencilWeight> quadratic_difference(int centre,
-                                                const std::vector<StencilNeighbour>& ring) {
+inline std::vector<StencilWeight> quadratic_difference(int centre,
+                                                       const std::vector<StencilNeighbour>& ring) {
   const double size = detail::ring_radius(ring);
   if (ring.size() < 5 || !(size > 0)) return {};
 
   // Minimise sum w^2 / v subject to exactness for 1 (through the centre weight), s, n, s^2, sn,
   // n^2.
-  using Monomials = Eigen::Matrix<Number, 5, 1>;
-  using Gram = Eigen::Matrix<Number, 5, 5>;
+  using Monomials = detail::FullPivoting::Vector;
+  constexpr int size_of_basis = detail::FullPivoting::size;
   std::vector<Monomials> p(ring.size());
   std::vector<double> v(ring.size()), w(ring.size(), 0.0);
-  Gram gram = Gram::Zero();
+  std::array<Monomials, size_of_basis> gram{};
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const double s = ring[k].along / size, n = ring[k].across / size;
-    p[k] << s, n, s * s, s * n, n * n;
+    p[k] = {s, n, s * s, s * n, n * n};
     v[k] = 1 / ((n * n + 1e-3) * (n * n + 1e-3));
-    gram += v[k] * p[k] * p[k].transpose();
+    for (int i = 0; i < size_of_basis; ++i)
+      for (int j = 0; j < size_of_basis; ++j) gram[i][j] += v[k] * p[k][i] * p[k][j];
   }
-  const Eigen::FullPivLU<Gram> lu(gram);
-  if (lu.rank() < 5) return {};
+  const detail::FullPivoting lu(gram);
+  if (!lu.is_regular()) return {};
   // A second pass takes out what the condition of the matrix, 1e6 by the weights v, has left over.
-  Monomials missing = 2 * Monomials::Unit(2);
+  Monomials missing{0, 0, 2, 0, 0};
   for (int pass = 0; pass < 2; ++pass) {
     const Monomials multiplier = lu.solve(missing);
     for (std::size_t k = 0; k < ring.size(); ++k) {
-      const double dw = v[k] * p[k].dot(multiplier);
+      double exact = 0;
+      for (int i = 0; i < size_of_basis; ++i) exact += p[k][i] * multiplier[i];
+      const double dw = v[k] * exact;
       w[k] += dw;
-      missing -= dw * p[k];
+      for (int i = 0; i < size_of_basis; ++i) missing[i] -= dw * p[k][i];
     }
   }
   std::vector<StencilWeight> out{{centre, 0.0}};

@@ -5,24 +5,9 @@
 /// packs.
 
 #include "crossbeam/element/coefficients.hpp"
-#include "crossbeam/law/woven_membrane.hpp"
-
-#include <concepts>
+#include "crossbeam/law/membrane_law.hpp"
 
 namespace crossbeam {
-
-/// The law a membrane element needs. With a member `yarn_energy` like shear_energy it has a
-/// potential; WovenMembrane is one such law, and a law of one's own needs no cell.
-template <class Law, class T>
-concept MembraneLaw = requires(const Law& law, const FibreStrain<T>& beta) {
-  typename Law::Real;
-  { law.reference() } -> std::convertible_to<FibreAngle<typename Law::Real>>;
-  { law.evaluate(beta).fibres } -> std::convertible_to<FibreState<T>>;
-  { law.stress(law.evaluate(beta)) } -> std::same_as<FibreStress<T>>;
-  { law.shear_energy(law.evaluate(beta)) } -> std::same_as<T>;
-  { law.yarn_tension(law.evaluate(beta)) } -> std::same_as<Vector2<T>>;
-  { law.stiffness_bound() } -> std::convertible_to<typename Law::Real>;
-};
 
 /// The fibre vectors of a Gauss point.
 template <int M, class T, int K>

@@ -7,8 +7,6 @@
 #include "crossbeam/base/linalg.hpp"
 #include "crossbeam/base/scalar.hpp"
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -28,8 +26,9 @@ Matrix2<T> metric(const Base<T>& base) {
 /// Determinant of the metric (Eq. 7), as |A1 x A2|^2: this form does not cancel for skew bases.
 template <class T>
 T metric_determinant(const Base<T>& base) {
-  const Vector3<T> n = base.col(0).cross(base.col(1));
-  return n.dot(n);
+  const auto column = [&](int k) { return Vec3<T>{base(0, k), base(1, k), base(2, k)}; };
+  const Vec3<T> n = cross(column(0), column(1));
+  return dot(n, n);
 }
 
 /// Covariant Green-Lagrange strain (Eq. 3) from the current and the reference base [length^2].
@@ -40,7 +39,7 @@ Matrix2<T> convected_strain(const Base<T>& current, const Base<T>& reference) {
 }
 
 /// The same strain from the reference base and the increment d_a = a_a - A_a, which is the gradient
-/// of the displacement: no cancellation, tag [K-1].
+/// of the displacement; nothing cancels, tag [K-1].
 template <class T>
 Matrix2<T> convected_strain_from_increment(const Base<T>& increment, const Base<T>& reference) {
   const Matrix2<T> Ad = reference.transpose() * increment;
@@ -49,8 +48,13 @@ Matrix2<T> convected_strain_from_increment(const Base<T>& increment, const Base<
 
 namespace detail {
 
-/// |A1 x A2| of an element base, checked: squares of its lengths and of the area keep their digits,
-/// and the vectors are not parallel up to their rounding (a thousand of them).
+/// Least sine of the angle between two base vectors, in roundings of the number type [-]. The area
+/// of vectors that are more nearly parallel is rounding alone, and so would be everything divided
+/// by it.
+inline constexpr int least_sine_in_roundings = 1024;
+
+/// |A1 x A2| of an element base [mm^2]. It checks that squares of its lengths and of the area keep
+/// their digits and that the vectors are not parallel up to `least_sine_in_roundings`.
 /// @throws InputError otherwise
 template <class T>
 T checked_area(const std::string& name, const Base<T>& base) {
@@ -58,10 +62,10 @@ T checked_area(const std::string& name, const Base<T>& base) {
   using R = real_t<T>;
   const T det = metric_determinant(base);
   const T A11 = base.col(0).dot(base.col(0)), A22 = base.col(1).dot(base.col(1));
-  const R eps = epsilon_of<T>(), least = std::numeric_limits<R>::min() / (eps * eps);
+  const R eps = epsilon_of<T>(), least = (std::numeric_limits<R>::min)() / (eps * eps);
   if (!(det >= T(least) && A11 >= T(least) && A22 >= T(least) &&
-        A11 * A22 <= T(std::numeric_limits<R>::max()) &&
-        det > T(R(1 << 20) * eps * eps) * A11 * A22))
+        A11 * A22 <= T((std::numeric_limits<R>::max)()) &&
+        det > T(R(least_sine_in_roundings) * R(least_sine_in_roundings) * eps * eps) * A11 * A22))
     throw InputError(name, "area " + detail::to_text(passive(det)) + "^(1/2)", "mm^2",
                      "two finite base vectors that span an area > 0");
   return sqrt(det);

@@ -61,8 +61,8 @@ CROSSBEAM_INLINE T octant_polynomial(const T& z, const double (&coefficients)[Te
   return even + z * odd;
 }
 
-/// arcsin x with root = sqrt(1 - x^2) > 0 given, tag [K-5]: turned by 0, 45 or 90 deg into the octant
-/// about zero.
+/// arcsin x with root = sqrt(1 - x^2) > 0 given, tag [K-5]: the angle is turned by 0, 45 or 90 deg
+/// into the octant about zero.
 template <class T>
 CROSSBEAM_INLINE T pack_asin(const T& x, const T& root) {
   using R = real_t<T>;
@@ -87,23 +87,29 @@ CROSSBEAM_INLINE T pack_asin(const T& x, const T& root) {
 
 }  // namespace detail
 
-/// Covariant Green-Lagrange strains in the fibre frame (Eq. 10): beta_ab = (f_a.f_b - F_a.F_b)/2.
-/// The one strain measure that the laws take; components may be SIMD packs.
+/// Covariant Green-Lagrange strains in the fibre frame (Eq. 10): beta_ab = (f_a.f_b - F_a.F_b)/2
+/// [-]. It is the one strain measure that the laws take; components may be SIMD packs.
 template <class T>
 struct FibreStrain {
   T b11{}, b22{}, b12{};
 };
 
+/// Least angle between warp and weft, and between weft and reversed warp, that a law takes [rad].
+/// The law divides by its sine, so that stresses lose as many digits as the angle has zeros: four
+/// here.
+inline constexpr double least_fibre_angle = 1e-4;
+
 /// The angle between warp and weft in the reference state.
 template <class R>
 struct FibreAngle {
-  R delta;  ///< delta_bar [rad]; in (1e-4, pi - 1e-4)
+  R delta;  ///< delta_bar [rad]; in (least_fibre_angle, pi - least_fibre_angle)
   R cosine, sine;
 
   /// @throws InputError for an angle of 0 or 180 deg, nearly so or beyond: with parallel yarns the
   /// law would divide by a sine of zero.
   explicit FibreAngle(R delta_bar)
-      : delta(require_between("delta_bar", delta_bar, "rad", 1e-4, std::numbers::pi - 1e-4)) {
+      : delta(require_between("delta_bar", delta_bar, "rad", least_fibre_angle,
+                              std::numbers::pi - least_fibre_angle)) {
     using std::cos;
     using std::sin;
     cosine = cos(delta_bar);
@@ -161,7 +167,7 @@ CROSSBEAM_INLINE T relative_elongation(const T& beta, const T& lambda) {
   return (beta + beta) / (T(1) + lambda);
 }
 
-/// 1/lambda1, 1/lambda2 and their product by one division.
+/// 1/lambda1, 1/lambda2 and their product, computed with one division.
 template <class T>
 struct InverseStretches {
   T first, second, product;
@@ -179,8 +185,8 @@ CROSSBEAM_INLINE T fibre_cosine(const FibreStrain<T>& b, const T& lambda1, const
   return (b.b12 + b.b12 + T(reference_cosine)) * InverseStretches<T>(lambda1, lambda2).product;
 }
 
-/// arcsin of any scalar: one formula for float, double and packs of them, so that lanes equal
-/// scalars; the library's own asin for wider types. Dual numbers bring their own overload.
+/// arcsin of any scalar. Float, double and packs of them share one formula, so that lanes equal
+/// scalars; wider types take the standard library's asin; dual numbers bring their own overload.
 template <class T>
 CROSSBEAM_INLINE T arcsine(const T& x) {
   using R = real_t<T>;
@@ -192,8 +198,8 @@ CROSSBEAM_INLINE T arcsine(const T& x) {
   }
 }
 
-/// The same where the cosine of the answer, root = sqrt(1 - x^2), is known already: no further root,
-/// and a shorter polynomial, tag [K-5].
+/// The same where the cosine of the answer, root = sqrt(1 - x^2), is known already: it needs no
+/// further root and a shorter polynomial, tag [K-5].
 template <class T>
 CROSSBEAM_INLINE T arcsine(const T& x, const T& root) {
   using R = real_t<T>;
@@ -205,8 +211,8 @@ CROSSBEAM_INLINE T arcsine(const T& x, const T& root) {
   }
 }
 
-/// Signed shear angle gamma = delta_bar - delta [rad]: positive when warp and weft close up. The sine
-/// form is accurate at small angles, tag [K-3].
+/// Signed shear angle gamma = delta_bar - delta [rad], positive when warp and weft close up. The
+/// form by the sine is accurate at small angles, tag [K-3].
 template <class T, class R>
 CROSSBEAM_INLINE T shear_angle(const T& cosine, const FibreAngle<R>& reference) {
   return arcsine(cosine) - T(detail::half_pi<R>() - reference.delta);

@@ -36,12 +36,46 @@ struct FibreState {
   T lambda1{}, lambda2{};
 };
 
+/// What a shear layer offers. Two members more are used where they are there:
+///  - gradient(beta, inv1, inv2), from the strain and the reciprocals of the stretches: explicit
+///    dynamics, which has those at hand, then computes no stretch a second time;
+///  - set_reference(angle) between the yarns in the reference state: a layer that depends on it is
+///    described without one and gets it from its law.
 template <class Law, class T>
 concept ShearLaw = requires(const Law& law, const FibreState<T>& s) {
   { law.gradient(s) } -> std::same_as<StrainGradient<T>>;
   { law.energy(s) } -> std::same_as<T>;
   { law.hessian(s) } -> std::same_as<StrainHessian<T>>;
-  law.modulus_bound();
+  { law.modulus_bound() } -> std::convertible_to<real_t<T>>;
+};
+
+/// A layer between yarns at that angle; a law does this with its own.
+/// @throws InputError where the layer already has another angle
+template <class Shear, class R>
+[[nodiscard]] Shear between_yarns(Shear shear, const FibreAngle<R>& reference) {
+  if constexpr (requires { shear.set_reference(reference); }) shear.set_reference(reference);
+  return shear;
+}
+
+/// The reference angle of a shear layer: a right angle until a law has set its own.
+template <class R>
+class LayerAngle {
+ public:
+  /// @throws InputError where the layer already has another angle
+  void set(const FibreAngle<R>& reference) {
+    if (is_set_ && reference.delta != angle_.delta)
+      throw InputError("fibre angle of the law",
+                       detail::to_text(static_cast<double>(reference.delta)), "rad",
+                       "the angle that its shear layer was given before, " +
+                           detail::to_text(static_cast<double>(angle_.delta)));
+    angle_ = reference;
+    is_set_ = true;
+  }
+  [[nodiscard]] CROSSBEAM_HOST_DEVICE const FibreAngle<R>& get() const { return angle_; }
+
+ private:
+  FibreAngle<R> angle_ = FibreAngle<R>::right();
+  bool is_set_ = false;
 };
 
 /// Whether the modulus multiplies the tensor component E12 (the paper, Eq. 26) or 2 E12.
@@ -57,14 +91,18 @@ class ConstantShear {
   using Real = R;
 
   /// @param modulus G12 [kN/mm, t = 1]; >= 0
-  ConstantShear(R modulus, const FibreAngle<R>& reference,
-                ShearMeasure measure = ShearMeasure::tensor,
-                ShearFrame frame = ShearFrame::cartesian)
+  explicit ConstantShear(R modulus, ShearMeasure measure = ShearMeasure::tensor,
+                         ShearFrame frame = ShearFrame::cartesian)
       : G_(require_non_negative("shear.modulus", modulus, "kN/mm") *
-           (measure == ShearMeasure::tensor ? R(1) : R(2))) {
-    const bool cartesian = frame == ShearFrame::cartesian;
-    a_ = cartesian ? -reference.cosine / reference.sine : R(0);
-    b_ = cartesian ? R(1) / reference.sine : R(1);
+           (measure == ShearMeasure::tensor ? R(1) : R(2))),
+        frame_(frame) {}
+
+  void set_reference(const FibreAngle<R>& reference) {
+    angle_.set(reference);
+    if (frame_ == ShearFrame::cartesian) {
+      a_ = -reference.cosine / reference.sine;
+      b_ = R(1) / reference.sine;
+    }
   }
 
   /// E12 = a beta11 + b beta12 in the chosen frame.
@@ -97,7 +135,9 @@ class ConstantShear {
   [[nodiscard]] R modulus_bound() const { return G_ * b_ * b_; }
 
  private:
-  R G_, a_, b_;
+  R G_, a_ = R(0), b_ = R(1);
+  ShearFrame frame_;
+  LayerAngle<R> angle_;
 };
 
 /// An energy in the fibre angle: W(gamma), tau = dW/dgamma, both from `Curve`, which maps |gamma| to
@@ -107,12 +147,14 @@ class AngleShear {
  public:
   using Real = R;
 
-  AngleShear(Curve curve, const FibreAngle<R>& reference)
-      : curve_(std::move(curve)), reference_(reference) {}
+  explicit AngleShear(Curve curve) : curve_(std::move(curve)) {}
+
+  void set_reference(const FibreAngle<R>& reference) { reference_.set(reference); }
 
   template <class T>
   CROSSBEAM_INLINE T angle(const FibreState<T>& s) const {
-    return shear_angle(fibre_cosine(s.beta, s.lambda1, s.lambda2, reference_.cosine), reference_);
+    return shear_angle(fibre_cosine(s.beta, s.lambda1, s.lambda2, reference_.get().cosine),
+                       reference_.get());
   }
   template <class T>
   CROSSBEAM_INLINE T energy(const FibreState<T>& s) const {
@@ -126,16 +168,16 @@ class AngleShear {
   template <class T>
   CROSSBEAM_INLINE StrainGradient<T> gradient(const FibreStrain<T>& beta, const T& inv1,
                                               const T& inv2) const {
-    const Slope<T> d(beta, inv1, inv2, reference_.cosine);
-    const T gamma = d.angle(reference_);
+    const Slope<T> d(beta, inv1, inv2, reference_.get().cosine);
+    const T gamma = d.angle(reference_.get());
     const T tau = times_sign(curve_.traction(magnitude(gamma)), gamma);
     return {tau * d.g1, tau * d.g2, tau * d.g3};
   }
   template <class T>
   CROSSBEAM_INLINE StrainHessian<T> hessian(const FibreState<T>& s) const {
     const InverseStretches<T> inverse(s.lambda1, s.lambda2);
-    const Slope<T> d(s.beta, inverse.first, inverse.second, reference_.cosine);
-    const T gamma = d.angle(reference_);
+    const Slope<T> d(s.beta, inverse.first, inverse.second, reference_.get().cosine);
+    const T gamma = d.angle(reference_.get());
     const T t = curve_.traction(magnitude(gamma)), G = curve_.modulus(magnitude(gamma));
     const T tau = select(gamma < T(0), -t, t);
     // d2 gamma = d2 c / k + c dc dc / k^3, with c the fibre cosine and k = sqrt(1 - c^2)  [L-5]
@@ -188,7 +230,7 @@ class AngleShear {
   };
 
   Curve curve_;
-  FibreAngle<R> reference_;
+  LayerAngle<R> reference_;
 };
 
 /// Tangent modulus as a polynomial of the angle: G = sum_k a_k |gamma|^k; traction and energy are its
@@ -212,7 +254,7 @@ class PolynomialCurve {
     }
     for (int k = 0; k <= 120; ++k) {
       const R G = modulus(R(k) / R(100));
-      if (!(G >= R(0) && G <= std::numeric_limits<R>::max()))
+      if (!(G >= R(0) && G <= (std::numeric_limits<R>::max)()))
         throw InputError("shear.coefficients: G(" + detail::to_text(k / 100.0) + " rad)",
                          detail::to_text(G), "kN/mm",
                          "a finite number >= 0 for all angles from 0 to 1.2 rad");

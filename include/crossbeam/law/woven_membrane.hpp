@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <limits>
 
 namespace crossbeam {
@@ -33,19 +34,29 @@ struct FibreStress {
 /// of the cells from step to step, tag [C-14].
 enum class CellPrice { equilibrium, followed };
 
+/// @tparam Cell  CrossedBeamCell, SecondOrderCell or a UnitCell of one's own
+/// @tparam Shear a shear layer; it is described without the fibre angle, which the law sets
 template <class Cell, class Shear, CellPrice Price = CellPrice::equilibrium>
+  requires UnitCell<Cell, typename Cell::Real> && ShearLaw<Shear, typename Cell::Real> &&
+           (Price == CellPrice::equilibrium || FollowedCell<Cell, typename Cell::Real>)
 class WovenMembrane {
  public:
   using Real = typename Cell::Real;
   using R = Real;
   static constexpr bool follows_heights = Price == CellPrice::followed;
 
+  /// @param reference angle between the yarns in the reference state
   /// @param width selects the corrected or the literal Eq. 15
   /// @param control how the cell is iterated at every evaluation
+  /// @throws InputError where the shear layer was given another angle before
   WovenMembrane(Cell cell, Shear shear, FibreAngle<R> reference = FibreAngle<R>::right(),
                 YarnWidth width = YarnWidth::corrected,
                 SolverControl control = SolverControl::converged())
-      : cell_(std::move(cell)), shear_(std::move(shear)), reference_(reference), control_(control) {
+      : cell_(std::move(cell)),
+        shear_(between_yarns(std::move(shear), reference)),
+        reference_(reference),
+        width_(width),
+        control_(control) {
     const auto& p = cell_.parameters();
     L1_ = p.warp.length;
     L2_ = p.weft.length;
@@ -53,6 +64,14 @@ class WovenMembrane {
               (R(p.symmetry) * L1_ * L2_ * (width == YarnWidth::corrected ? reference.sine : R(1)));
     width1_ = L1_ * inv_A0_;
     width2_ = L2_ * inv_A0_;
+  }
+
+  /// The same law for explicit dynamics, which then follows the heights of the cells, tag [C-14]:
+  /// the cheapest, and no other method can use it.
+  template <class C = Cell>
+    requires FollowedCell<C, R>
+  [[nodiscard]] WovenMembrane<C, Shear, CellPrice::followed> followed() const {
+    return {cell_, shear_, reference_, width_, control_};
   }
 
   [[nodiscard]] CROSSBEAM_HOST_DEVICE const Cell& cell() const { return cell_; }
@@ -82,10 +101,49 @@ class WovenMembrane {
     return s;
   }
 
-  /// @name Stress by one residual evaluation of the cell, tag [C-14], for the small steps of explicit
-  /// dynamics: in three parts, so that each makes a loop short enough for the processor to look
-  /// ahead, tag [S-4].
+  /// @name Stress by one residual evaluation of the cell, tag [C-14], for the small steps of
+  /// explicit dynamics: a row of points in loops short enough for the processor to look ahead, tag
+  /// [S-4], and what each of them does at one point.
   /// @{
+  /// Stresses of a row of points, and the reciprocals of the yarns' stretches on the way.
+  /// @param row the strains; a PointRows (sweep/point_rows.hpp), whose numbers stay in the cache
+  /// @param end points, a multiple of the lanes
+  /// @param heights of the cells of the first pack, warp and then weft; moved on to the equilibrium
+  /// @param stride from one pack's heights to the next's
+  template <class Row>
+  CROSSBEAM_INLINE void stresses(Row& row, int end, R* heights, std::size_t stride) const {
+    using T = typename Row::Number;
+    constexpr int lanes = lanes_v<T>;
+    for (int i = 0; i < end; i += lanes) {
+      T u1, u2, inv1, inv2;
+      elongate(row.b11.load(i), row.b22.load(i), u1, u2, inv1, inv2);
+      row.u1.store(i, u1);
+      row.u2.store(i, u2);
+      row.inv1.store(i, inv1);
+      row.inv2.store(i, inv2);
+    }
+    for (int y = 0; y < 2; ++y) {
+      const auto& yarn = y == 0 ? cell_.warp() : cell_.weft();
+      const auto& u = y == 0 ? row.u1 : row.u2;
+      const R* height = heights + y * lanes;
+      for (int i = 0; i < end; i += lanes, height += stride)
+        row.yarn[y].store(i, cell_.evaluate_yarn(yarn, u.load(i), T::load(height)));
+    }
+    R* height = heights;
+    for (int i = 0; i < end; i += lanes, height += stride) {
+      CrimpHeights<T> w{T::load(height), T::load(height + lanes)};
+      T m11, m22;
+      follow(row.u1.load(i), row.u2.load(i), row.inv1.load(i), row.inv2.load(i),
+             row.yarn[0].load(i), row.yarn[1].load(i), w, m11, m22);
+      w.w1.store(height);
+      w.w2.store(height + lanes);
+      row.m11.store(i, m11);
+      row.m22.store(i, m22);
+    }
+    for (int i = 0; i < end; i += lanes)
+      row.store_stress(i, with_shear(row.strain(i), row.inv1.load(i), row.inv2.load(i),
+                                     row.m11.load(i), row.m22.load(i)));
+  }
   /// Elongations of the yarns and reciprocals of their stretches.
   template <class T>
   CROSSBEAM_INLINE void elongate(const T& b11, const T& b22, T& u1, T& u2, T& inv1, T& inv2) const {
@@ -113,7 +171,11 @@ class WovenMembrane {
   template <class T>
   CROSSBEAM_INLINE FibreStress<T> with_shear(const FibreStrain<T>& beta, const T& inv1,
                                              const T& inv2, const T& m11, const T& m22) const {
-    const StrainGradient<T> g = shear_.gradient(beta, inv1, inv2);
+    StrainGradient<T> g;
+    if constexpr (requires { shear_.gradient(beta, inv1, inv2); })
+      g = shear_.gradient(beta, inv1, inv2);
+    else
+      g = shear_.gradient(FibreState<T>{beta, stretch(beta.b11), stretch(beta.b22)});
     return {m11 + g.g1, m22 + g.g2, T(0.5) * g.g3};
   }
   /// @}
@@ -174,6 +236,7 @@ class WovenMembrane {
   Cell cell_;
   Shear shear_;
   FibreAngle<R> reference_;
+  YarnWidth width_;
   SolverControl control_;
   R L1_{}, L2_{}, inv_A0_{};
   R width1_{}, width2_{};  ///< L_i / A0
@@ -200,9 +263,8 @@ namespace detail {
 /// Whether every entry is a number and finite.
 template <class Derived>
 bool all_finite(const Eigen::MatrixBase<Derived>& a) {
-  using std::isfinite;
   for (Eigen::Index i = 0; i < a.size(); ++i)
-    if (!isfinite(passive(a.derived().coeff(i / a.cols(), i % a.cols())))) return false;
+    if (!is_finite(passive(a.derived().coeff(i / a.cols(), i % a.cols())))) return false;
   return true;
 }
 
@@ -239,17 +301,23 @@ MembraneResponse<T> membrane_response(const Law& law, const Matrix2<T>& E,
     CROSSBEAM_EXPECTS(want == Tangent::no);
   }
   if (out.status == CellStatus::converged) {
-    using std::isfinite;
     const T cosine = fibre_cosine(state.fibres.beta, state.fibres.lambda1, state.fibres.lambda2,
                                   law.reference().cosine);
     const bool tangent = want == Tangent::yes;
     if (!(magnitude(cosine) < T(R(1) - R(8) * std::numeric_limits<R>::epsilon())))
       out.status = CellStatus::outside_kinematics;
-    else if (!(detail::all_finite(out.S) && isfinite(passive(out.energy)) &&
+    else if (!(detail::all_finite(out.S) && is_finite(passive(out.energy)) &&
                (!tangent || detail::all_finite(out.dS_dE))))
       out.status = CellStatus::not_converged;
   }
   return out;
+}
+
+/// The same for a strain in another matrix or expression of Eigen.
+template <class Law, class Strain>
+  requires std::is_base_of_v<Eigen::MatrixBase<Strain>, Strain>
+auto membrane_response(const Law& law, const Strain& E, Tangent want = Tangent::no) {
+  return membrane_response(law, Matrix2<typename Strain::Scalar>(E), want);
 }
 
 /// Cauchy stress (Eq. 21) from S and the surface gradient; J is the area ratio. For a host whose J

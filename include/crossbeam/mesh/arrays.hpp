@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Structure-of-arrays storage of nodal vectors: aligned and padded, so that a pack may be loaded at
-/// any node.
+/// Nodal vectors as structures of arrays. They are aligned and padded, so that a pack may be loaded
+/// at any node.
 
 #include "crossbeam/base/scalar.hpp"
 
@@ -51,8 +51,8 @@ struct NodeVectors {
   }
 };
 
-/// Where the components begin: in a loop that stores packs, a compiler would read them again and again
-/// from the arrays themselves.
+/// Addresses at which the components begin. In a loop that stores packs, a compiler would read them
+/// again and again from the arrays themselves.
 template <class R>
 struct NodePointers {
   R *x, *y, *z;

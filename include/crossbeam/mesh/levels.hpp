@@ -1,9 +1,10 @@
 #pragma once
 /// @file
 /// Levels of a mesh: its nodes in a sequence of sets such that the nodes of an element stand in one
-/// of them or in two neighbouring ones. Found by breadth-first search, or read off the numbering that
-/// a mesh has. Theory: docs/theory/sweep.md, "Numbering".
+/// of them or in two neighbouring ones. A breadth-first search finds them, or they are read off the
+/// numbering that a mesh has. Theory: docs/theory/sweep.md, "Numbering".
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/mesh/mesh.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ struct Levels {
   [[nodiscard]] int count() const { return static_cast<int>(start.size()) - 1; }
   [[nodiscard]] int widest() const {
     int most = 0;
-    for (int l = 0; l < count(); ++l) most = std::max(most, start[l + 1] - start[l]);
+    for (int l = 0; l < count(); ++l) most = maximum(most, start[l + 1] - start[l]);
     return most;
   }
   [[nodiscard]] std::vector<int> last() const {
@@ -57,12 +58,12 @@ class LevelSearch {
     return search(std::move(roots), [](int) { return true; });
   }
 
-  /// All that is connected with a node, in the narrowest levels tried: from a pseudo-peripheral node
-  /// (George and Liu), from all nodes of the farthest level, and from half of those.
+  /// All that is connected with a node, in the narrowest levels tried: from a pseudo-peripheral
+  /// node (George and Liu), from all nodes of the farthest level, and from half of those.
   Levels part(int any_node) {
     Levels from_node = search({any_node});
-    // Each turn but the last lengthens the levels; in practice two to four. The bound keeps the cost
-    // in proportion to the mesh whatever the mesh.
+    // Each turn but the last lengthens the levels; in practice two to four. The bound keeps the
+    // cost in proportion to the mesh whatever the mesh.
     for (int turn = 0, depth = 0; turn < 8 && from_node.count() > depth; ++turn) {
       depth = from_node.count();
       const std::vector<int> farthest = from_node.last();
@@ -154,10 +155,10 @@ Levels node_levels(const Mesh<Corners>& mesh) {
   for (int n = 0; n < mesh.node_count; ++n)
     if (!walk.seen(n))
       for (int m : walk.search({n}).node) walked.push_back(m);
-  const std::vector<int> place = inverse(walked);
+  const std::vector<int> new_node = inverse(walked);
   auto elements = mesh.elements;
   for (auto& element : elements)
-    for (int& n : element) n = place[n];
+    for (int& n : element) n = new_node[n];
   std::sort(elements.begin(), elements.end());
   detail::LevelSearch<Corners> search(mesh.node_count, elements);
   Levels out;
@@ -173,8 +174,8 @@ Levels node_levels(const Mesh<Corners>& mesh) {
 
 /// Levels of a mesh without numbering it anew: blocks of consecutive nodes such that every element
 /// stands in one block or in two neighbouring ones. A block ends at the highest node that shares an
-/// element with the block before; the end of the first is the one with the narrowest widest block. A
-/// numbering without order gives few blocks, at worst one.
+/// element with the block before; the end of the first is the one with the narrowest widest block.
+/// A numbering without order gives few blocks, at worst one.
 /// @return first node of each block; the node count at the end
 template <int Corners>
 std::vector<int> levels_in_place(const Mesh<Corners>& mesh) {
@@ -183,19 +184,19 @@ std::vector<int> levels_in_place(const Mesh<Corners>& mesh) {
   for (int n = 0; n < count; ++n) reach[n] = n;
   for (const auto& element : mesh.elements) {
     const auto [low, high] = std::minmax_element(element.begin(), element.end());
-    reach[*low] = std::max(reach[*low], *high);
+    reach[*low] = maximum(reach[*low], *high);
   }
-  for (int n = 1; n < count; ++n) reach[n] = std::max(reach[n], reach[n - 1]);
+  for (int n = 1; n < count; ++n) reach[n] = maximum(reach[n], reach[n - 1]);
   std::vector<int> widest(count, 0);  // of the blocks that follow one that ends at n
   for (int n = count - 1; n >= 0; --n)
-    if (reach[n] > n) widest[n] = std::max(reach[n] - n, widest[reach[n]]);
+    if (reach[n] > n) widest[n] = maximum(reach[n] - n, widest[reach[n]]);
   std::vector<int> start{0};
   while (start.back() < count) {  // no element crosses to the nodes from here on: a new first block
     const int begin = start.back();
     int end = begin;
     // Stops where no element crosses, at the latest: one block is then as narrow as what follows.
     for (int n = begin, least = count + 1; n - begin + 1 < least; ++n) {
-      const int width = std::max(n - begin + 1, widest[n]);
+      const int width = maximum(n - begin + 1, widest[n]);
       if (width < least) {
         least = width;
         end = n;

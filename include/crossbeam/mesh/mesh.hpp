@@ -3,18 +3,38 @@
 /// A checked surface mesh of one element type in space, with explicit fibre directions per element.
 /// Nothing about the fibres is taken from the numbering of an element.
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/element/coefficients.hpp"
 #include "crossbeam/element/quadrilateral.hpp"
 #include "crossbeam/element/triangle.hpp"
 #include "crossbeam/mesh/arrays.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
 
 namespace crossbeam {
+
+/// What a mesh must not fall below, or exceed.
+namespace mesh_limits {
+
+/// Twice the area of an element over the square of its longest side [-]. Flatter elements are taken
+/// for lines: in the arithmetic of the reference coefficients nine of double's digits are gone.
+inline constexpr double flatness = 1e-9;
+
+/// Angle between a fibre and the plane of its element [rad]. Up to this one a direction is
+/// projected into the plane; beyond, it was probably meant for another element.
+inline constexpr double fibre_out_of_plane = 5 * std::numbers::pi / 180;
+
+/// Least angle between warp and weft, and between weft and reversed warp [rad]. Directions nearer
+/// than that are taken for a slip, such as the same vector given twice.
+inline constexpr double fibre_angle = 1e-3;
+
+}  // namespace mesh_limits
 
 /// @tparam Corners 3 or 4
 template <int Corners>
@@ -24,13 +44,13 @@ struct Mesh {
   std::vector<std::array<int, Corners>> elements;  ///< node numbers, counter-clockwise
   std::vector<FibreDirections<double>> fibres;     ///< per element; normalised by the constructor
 
-  /// Checks everything that a run relies on and normalises the fibre directions.
+  /// Checks everything that a simulation relies on and normalises the fibre directions.
   /// @param positions reference positions [mm]
   /// @param fibre_directions warp and weft of each element: vectors in its plane, of any length
-  /// @throws InputError naming element or node for: a node number out of range, a coordinate or
-  ///   direction that is not finite, an element without area or with an inverted corner, a fibre out
-  ///   of the element's plane by more than 5 deg, warp and weft at 0 or 180 deg or the wrong way
-  ///   round.
+  /// @throws InputError that names element or node: where a node number is out of range, a
+  ///   coordinate or direction is not finite, an element has no area or an inverted corner, a fibre
+  ///   leaves the element's plane (mesh_limits), or warp and weft lie at 0 or 180 deg or the wrong
+  ///   way round.
   Mesh(const std::vector<Vec3<double>>& positions,
        std::vector<std::array<int, Corners>> connectivity,
        std::vector<FibreDirections<double>> fibre_directions)
@@ -92,11 +112,11 @@ struct Mesh {
     const double twice_area = detail::norm(area_vector);
     double longest = 0;
     for (int a = 0; a < Corners; ++a)
-      longest = std::max(longest, detail::norm(X[(a + 1) % Corners] - X[a]));
+      longest = maximum(longest, detail::norm(X[(a + 1) % Corners] - X[a]));
     // An area below the second bound has not all its digits.
     constexpr double least =
-        std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
-    if (!(twice_area > 1e-9 * longest * longest && twice_area > least))
+        (std::numeric_limits<double>::min)() / std::numeric_limits<double>::epsilon();
+    if (!(twice_area > mesh_limits::flatness * longest * longest && twice_area > least))
       throw InputError(name + " area", detail::to_text(twice_area / 2), "mm^2",
                        "> 0 (the corners are collinear or coincide)");
     const Vec3<double> n = (1 / twice_area) * area_vector;
@@ -112,7 +132,7 @@ struct Mesh {
     f.warp = direction("mesh.fibres[" + std::to_string(e) + "].warp", f.warp, n);
     f.weft = direction("mesh.fibres[" + std::to_string(e) + "].weft", f.weft, n);
     const double angle = std::atan2(dot(cross(f.warp, f.weft), n), dot(f.warp, f.weft));
-    if (!(angle > 1e-3 && angle < std::numbers::pi - 1e-3))
+    if (!(angle > mesh_limits::fibre_angle && angle < std::numbers::pi - mesh_limits::fibre_angle))
       throw InputError("mesh.fibres[" + std::to_string(e) + "] angle from warp to weft",
                        detail::to_text(angle * 180 / std::numbers::pi), "deg",
                        "strictly between 0 and 180, seen against the element's normal");
@@ -127,8 +147,8 @@ struct Mesh {
     const Vec3<double> u{std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent),
                          std::scalbn(v.z, -exponent)};
     const double length = detail::norm(u);
-    const double out_of_plane = std::asin(std::min(std::abs(dot(u, n)) / length, 1.0));
-    if (out_of_plane > 5 * std::numbers::pi / 180)
+    const double out_of_plane = std::asin(minimum(std::abs(dot(u, n)) / length, 1.0));
+    if (out_of_plane > mesh_limits::fibre_out_of_plane)
       throw InputError(name + " angle to the element's plane",
                        detail::to_text(out_of_plane * 180 / std::numbers::pi), "deg", "0 to 5");
     const Vec3<double> in_plane = u - dot(u, n) * n;
@@ -142,8 +162,34 @@ struct SymmetryPlanes {
   bool y = false;  ///< the plane y = 0
 };
 
-/// A flat rectangle [0, width] x [0, length] of nx x ny quadrilaterals in the plane z = 0. Nodes are
-/// numbered along y first, so that consecutive elements have consecutive nodes.
+/// Longest distance between two nodes of one element [mm].
+template <int Corners>
+[[nodiscard]] double widest_element(const Mesh<Corners>& mesh) {
+  double squared = 0;
+  for (const auto& element : mesh.elements)
+    for (int i = 0; i < Corners; ++i)
+      for (int j = 0; j < i; ++j) {
+        const Vec3<double> across = mesh.nodes.get(element[i]) - mesh.nodes.get(element[j]);
+        squared = maximum(squared, dot(across, across));
+      }
+  return std::sqrt(squared);
+}
+
+/// A thousandth of the mesh's shortest edge [mm]: nodes closer to a mirror plane lie on it. Meshes
+/// written with six digits are off by far less, and no element is as flat.
+template <int Corners>
+[[nodiscard]] double plane_tolerance(const Mesh<Corners>& mesh) {
+  double shortest = (std::numeric_limits<double>::max)();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto X = mesh.corners(e);
+    for (int a = 0; a < Corners; ++a)
+      shortest = (std::min)(shortest, detail::norm(X[(a + 1) % Corners] - X[a]));
+  }
+  return 1e-3 * shortest;
+}
+
+/// A flat rectangle [0, width] x [0, length] of nx x ny quadrilaterals in the plane z = 0. Nodes
+/// are numbered along y first, so that consecutive elements have consecutive nodes.
 /// @param warp_angle direction of the warp from the x axis [rad]
 /// @param fibre_angle from warp to weft [rad]
 inline Mesh<4> rectangle(double width, double length, int nx, int ny, double warp_angle = 0,
@@ -163,10 +209,11 @@ inline Mesh<4> rectangle(double width, double length, int nx, int ny, double war
       const int n = i * pitch + j;
       elements.push_back({n, n + pitch, n + pitch + 1, n + 1});
     }
-  // cos(90 deg) must be zero, not 6e-17: the fibre lines then run exactly through the nodes.
+  // cos(90 deg) must be zero, not 6e-17: the fibre lines then pass exactly through the nodes.
   const auto unit = [](double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    return Vec3<double>{std::abs(c) < 1e-15 ? 0.0 : c, std::abs(s) < 1e-15 ? 0.0 : s, 0.0};
+    constexpr double rounding_of_pi = 1e-15;
+    const auto exact = [](double x) { return std::abs(x) < rounding_of_pi ? 0.0 : x; };
+    return Vec3<double>{exact(std::cos(angle)), exact(std::sin(angle)), 0.0};
   };
   const std::vector<FibreDirections<double>> fibres(
       elements.size(), {unit(warp_angle), unit(warp_angle + fibre_angle)});

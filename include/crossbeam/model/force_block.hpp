@@ -3,21 +3,16 @@
 /// What the time integration asks of a group of elements or stencils. A scene is a list of blocks:
 /// what it does not have costs nothing.
 
+#include "crossbeam/model/ledger.hpp"
 #include "crossbeam/model/nodal_state.hpp"
 #include "crossbeam/model/tangent_entries.hpp"
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace crossbeam {
-
-/// Stored energies of the internal forces, and the work that viscosity took [kN mm].
-struct InternalEnergy {
-  double yarn = 0, shear = 0, bending = 0, hourglass = 0;
-  double bulk_viscosity = 0;
-  [[nodiscard]] double stored() const { return yarn + shear + bending + hourglass; }
-};
 
 /// What one element looks like, averaged over its Gauss points: for output and checks.
 struct ElementSample {
@@ -45,7 +40,7 @@ class ForceBlock {
   /// Largest difference of two node numbers that are worked on at the same time; `whole` for a block
   /// that knows no stages and is asked for all at once.
   [[nodiscard]] virtual int bandwidth() const { return whole; }
-  static constexpr int whole = std::numeric_limits<int>::max();
+  static constexpr int whole = (std::numeric_limits<int>::max)();
   /// Sorts the work: what touches level s and none above is stage s.
   /// @param level_start first node of every level and the end; levels are wider than the bandwidth
   virtual void arrange(const std::vector<int>& /*level_start*/) {}
@@ -60,8 +55,14 @@ class ForceBlock {
   /// Whether the forces depend on the positions of earlier steps, which other integrators and the
   /// statics cannot offer.
   [[nodiscard]] virtual bool has_memory() const { return false; }
-  /// Energies at x_n.
-  virtual void add_energy(const NodalState<R>& state, InternalEnergy& energy) const = 0;
+  /// Books the block's terms at x_n: the energy that it stores, what it has dissipated or supplied
+  /// since the start.
+  virtual void add_energy(const NodalState<R>& state, EnergyLedger& ledger) const = 0;
+  /// @name What a model compares with its own; nothing where the block does not know it
+  /// @{
+  [[nodiscard]] virtual std::optional<int> node_count() const { return {}; }
+  [[nodiscard]] virtual std::optional<double> areal_mass() const { return {}; }  ///< [kg/mm^2]
+  /// @}
   /// Bound of the squared highest frequency of these forces on the lumped mass [1/ms^2]. Constant.
   [[nodiscard]] virtual double omega_squared() const = 0;
   /// Bound of the largest damping rate c/m of these forces' viscous part [1/ms]. Constant.
@@ -70,7 +71,7 @@ class ForceBlock {
   /// @throws InputError where the forces have no consistent tangent
   virtual void add_tangent(const NodalState<R>&, TangentEntries&) const {
     throw InputError("force block", "without a consistent tangent", "",
-                     "one that implements add_tangent");
+                     "one with add_tangent, for instance MembraneSweepWithTangent");
   }
   /// State of every element of the block; empty for blocks without elements.
   virtual void sample(const NodalState<R>&, std::vector<ElementSample>&) const {}

@@ -24,16 +24,16 @@ class StaticProblem {
   /// @param time  whose tool positions and forces are held [ms]
   StaticProblem(Model<double>& model, double time) : model_(model), time_(time) {
     model.require_no_memory();
-    for (std::size_t k = 0; k < model.tools.size(); ++k) {
-      model.tools[k]->come_to_rest(model.state);
-      const ToolMotion& motion = model.tools[k]->motion();
+    for (std::size_t k = 0; k < model.tools().size(); ++k) {
+      model.tools()[k]->come_to_rest(model.nodes());
+      const ToolMotion& motion = model.tools()[k]->motion();
       if (motion.is_free())
         free_tools_.push_back(static_cast<int>(k));
       else
-        model.tools[k]->place(motion.position(time), 0);
+        model.tools()[k]->place(motion.position(time), 0);
     }
-    unknowns_ = 3 * model.state.node_count + static_cast<int>(free_tools_.size());
-    for (auto* v : {&model.state.v, &model.state.v_predicted})
+    unknowns_ = 3 * model.nodes().node_count + static_cast<int>(free_tools_.size());
+    for (auto* v : {&model.nodes().v, &model.nodes().v_predicted})
       for (auto* component : {&v->x, &v->y, &v->z})
         std::fill(component->begin(), component->end(), 0.0);
   }
@@ -41,21 +41,21 @@ class StaticProblem {
   [[nodiscard]] int unknowns() const { return unknowns_; }
 
   void read(double* q) const {
-    for (int n = 0; n < model_.state.node_count; ++n) {
-      const Vec3<double> x = model_.state.x.get(n);
+    for (int n = 0; n < model_.nodes().node_count; ++n) {
+      const Vec3<double> x = model_.nodes().x.get(n);
       q[3 * n] = x.x;
       q[3 * n + 1] = x.y;
       q[3 * n + 2] = x.z;
     }
     for (std::size_t k = 0; k < free_tools_.size(); ++k)
-      q[3 * model_.state.node_count + k] = model_.tools[free_tools_[k]]->position();
+      q[3 * model_.nodes().node_count + k] = model_.tools()[free_tools_[k]]->position();
   }
 
   void write(const double* q) {
-    for (int n = 0; n < model_.state.node_count; ++n)
-      model_.state.x.set(n, {q[3 * n], q[3 * n + 1], q[3 * n + 2]});
+    for (int n = 0; n < model_.nodes().node_count; ++n)
+      model_.nodes().x.set(n, {q[3 * n], q[3 * n + 1], q[3 * n + 2]});
     for (std::size_t k = 0; k < free_tools_.size(); ++k)
-      model_.tools[free_tools_[k]]->place(q[3 * model_.state.node_count + k], 0);
+      model_.tools()[free_tools_[k]]->place(q[3 * model_.nodes().node_count + k], 0);
   }
 
   /// Unbalanced forces [kN]; 0 in components that are held.
@@ -87,17 +87,17 @@ class StaticProblem {
  private:
   void evaluate(const double* q, TangentEntries* tangent) {
     write(q);
-    NodalState<double>& s = model_.state;
+    NodalState<double>& s = model_.nodes();
     model_.clear_forces();
-    for (const auto& b : model_.blocks) b->add_forces(s, 1);
+    for (const auto& b : model_.blocks()) b->add_forces(s, 1);
     double squared = 0;
     for (int n = 0; n < s.node_count; ++n) squared += dot(s.f.get(n), s.f.get(n));
     internal_ = std::sqrt(squared);
     if (tangent)
-      for (const auto& b : model_.blocks) b->add_tangent(s, *tangent);
+      for (const auto& b : model_.blocks()) b->add_tangent(s, *tangent);
     force_.assign(static_cast<std::size_t>(unknowns_), 0.0);
     int row = 3 * s.node_count;
-    for (const auto& tool : model_.tools) {
+    for (const auto& tool : model_.tools()) {
       const bool free = tool->motion().is_free();
       const double f = tool->add_rest_forces(s, free ? row : -1, tangent);
       if (free) force_[row++] = tool->motion().force(time_) - f;
@@ -111,7 +111,7 @@ class StaticProblem {
   }
 
   [[nodiscard]] bool is_free(int i) const {
-    const NodalState<double>& s = model_.state;
+    const NodalState<double>& s = model_.nodes();
     const int n = i / 3;
     if (n >= s.node_count) return true;
     const double* free[] = {s.free.x.data(), s.free.y.data(), s.free.z.data()};

@@ -5,6 +5,7 @@
 
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/element/bending.hpp"
+#include "crossbeam/law/fabric.hpp"
 #include "crossbeam/model/force_block.hpp"
 #include "crossbeam/sweep/index_batches.hpp"
 #include "crossbeam/sweep/lane_array.hpp"
@@ -13,17 +14,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <compare>
-#include <map>
-#include <set>
+#include <tuple>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace crossbeam {
-
-struct BendingStiffness {
-  double warp = 0;  ///< D1 per unit width [kN mm]; >= 0
-  double weft = 0;  ///< D2 per unit width [kN mm]; >= 0
-};
 
 /// @tparam T pack
 template <class T>
@@ -36,21 +32,22 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   /// [B-4]
   template <int Corners>
   BendingSweep(const Mesh<Corners>& mesh, const BendingStiffness& stiffness, double areal_mass,
-               const SymmetryPlanes& planes = {}) {
+               const SymmetryPlanes& planes = {})
+      : node_count_(mesh.node_count), areal_mass_(areal_mass) {
     require_positive("areal_mass", areal_mass, "kg/mm^2");
-    const double D[2] = {require_non_negative("bending.warp", stiffness.warp, "kN mm"),
-                         require_non_negative("bending.weft", stiffness.weft, "kN mm")};
+    const double of_family[2] = {require_non_negative("bending.warp", stiffness.warp, "kN mm"),
+                                 require_non_negative("bending.weft", stiffness.weft, "kN mm")};
     const std::vector<double> area = mesh.tributary_areas();
     std::vector<double> row_sum(mesh.node_count, 0.0);
-    std::map<Key, std::vector<Stencil>> sorted;
+    std::vector<std::pair<Key, std::vector<Stencil>>> sorted;
     const std::vector<Surroundings> around = surroundings(mesh, planes);
     for (int n = 0; n < mesh.node_count; ++n)
       for (int family = 0; family < 2; ++family) {
-        if (!(D[family] > 0)) continue;
+        if (!(of_family[family] > 0)) continue;
         const auto weights = difference(mesh, around, n, family, planes);
         if (weights.empty()) continue;
         Stencil stencil;
-        stencil.stiffness = D[family] * area[n];
+        stencil.stiffness = of_family[family] * area[n];
         Key key{weights.size() > 3, family, {}};
         for (const auto& w : weights) {
           stencil.node.push_back(w.id / 4);
@@ -61,9 +58,14 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         for (double w : stencil.weight) sum += std::abs(w);
         for (std::size_t k = 0; k < stencil.node.size(); ++k)
           row_sum[stencil.node[k]] += stencil.stiffness * std::abs(stencil.weight[k]) * sum;
-        sorted[key].push_back(std::move(stencil));
+        auto group = std::find_if(sorted.begin(), sorted.end(),
+                                  [&](const auto& g) { return g.first == key; });
+        if (group == sorted.end()) group = sorted.insert(group, {key, {}});
+        group->second.push_back(std::move(stencil));
         ++count_;
       }
+    std::sort(sorted.begin(), sorted.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [key, stencils] : sorted) {
       if (key.mirrors.size() <= 3)
         short_.emplace_back(key.mirrors, stencils);
@@ -72,10 +74,10 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     }
     for (int n = 0; n < mesh.node_count; ++n) {
       const double omega_squared = row_sum[n] / (area[n] * areal_mass);  // Gershgorin
-      if (!std::isfinite(omega_squared))
+      if (!is_finite(omega_squared))
         throw InputError("squared bending frequency of mesh.nodes[" + std::to_string(n) + "]",
                          detail::to_text(omega_squared), "1/ms^2", "a finite number");
-      omega_squared_ = std::max(omega_squared_, omega_squared);
+      omega_squared_ = maximum(omega_squared_, omega_squared);
     }
   }
 
@@ -86,8 +88,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   }
   [[nodiscard]] int bandwidth() const override {
     int widest = 0;
-    for (const auto& group : short_) widest = std::max(widest, group.bandwidth());
-    for (const auto& group : long_) widest = std::max(widest, group.bandwidth());
+    for (const auto& group : short_) widest = maximum(widest, group.bandwidth());
+    for (const auto& group : long_) widest = maximum(widest, group.bandwidth());
     return widest;
   }
   void arrange(const std::vector<int>& level_start) override {
@@ -98,10 +100,14 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     for (const auto& group : short_) group.add_forces(state, stage);
     for (const auto& group : long_) group.add_forces(state, stage);
   }
-  void add_energy(const NodalState<R>& state, InternalEnergy& energy) const override {
-    for (const auto& group : short_) energy.bending += group.energy(state);
-    for (const auto& group : long_) energy.bending += group.energy(state);
+  void add_energy(const NodalState<R>& state, EnergyLedger& ledger) const override {
+    double sum = 0;
+    for (const auto& group : short_) sum += group.energy(state);
+    for (const auto& group : long_) sum += group.energy(state);
+    ledger.add("bending", EnergyKind::stored, sum);
   }
+  [[nodiscard]] std::optional<int> node_count() const override { return node_count_; }
+  [[nodiscard]] std::optional<double> areal_mass() const override { return areal_mass_; }
   void add_tangent(const NodalState<R>&, TangentEntries& tangent) const override {
     for (const auto& group : short_) group.add_tangent(tangent);
     for (const auto& group : long_) group.add_tangent(tangent);
@@ -123,21 +129,30 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     bool is_long;
     int family;
     std::vector<int> mirrors;
-    auto operator<=>(const Key&) const = default;
+    bool operator==(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(is_long, family, mirrors) <
+             std::tie(other.is_long, other.family, other.mirrors);
+    }
   };
   static int label(int node, int mirror) { return node * 4 + mirror; }
 
   struct Surroundings {
-    std::set<int> nodes;
+    std::vector<int> nodes;  ///< in their order, each once
     Vec3<double> warp{}, weft{}, normal{};
     bool rim = false;  ///< on a free edge
   };
+
+  static void keep_once(std::vector<int>& nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  }
 
   template <int Corners>
   static std::vector<Surroundings> surroundings(const Mesh<Corners>& mesh,
                                                 const SymmetryPlanes& planes) {
     std::vector<Surroundings> out(mesh.node_count);
-    std::map<std::pair<int, int>, int> edges;  // how many elements have it
+    std::vector<std::pair<int, int>> edges;  // of all elements
     for (int e = 0; e < mesh.element_count(); ++e) {
       const auto& corners = mesh.elements[e];
       const Vec3<double> normal = cross(mesh.fibres[e].warp, mesh.fibres[e].weft);
@@ -147,18 +162,22 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
         out[n].weft = out[n].weft + mesh.fibres[e].weft;
         out[n].normal = out[n].normal + normal;
         for (int m : corners)
-          if (m != n) out[n].nodes.insert(m);
-        ++edges[std::minmax(n, next)];
+          if (m != n) out[n].nodes.push_back(m);
+        edges.push_back(std::minmax(n, next));
       }
     }
-    for (const auto& [edge, elements] : edges) {
+    for (Surroundings& around : out) keep_once(around.nodes);
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t k = 0, next = 0; k < edges.size(); k = next) {
+      const auto edge = edges[k];
+      while (next < edges.size() && edges[next] == edge) ++next;
       const Vec3<double> A = mesh.nodes.get(edge.first), B = mesh.nodes.get(edge.second);
       const double tolerance = 1e-9 * detail::norm(B - A);
       const auto zero = [&](double a, double b) {
         return std::abs(a) <= tolerance && std::abs(b) <= tolerance;
       };
       const bool mirrored = (planes.x && zero(A.x, B.x)) || (planes.y && zero(A.y, B.y));
-      if (elements == 1 && !mirrored) out[edge.first].rim = out[edge.second].rim = true;
+      if (next - k == 1 && !mirrored) out[edge.first].rim = out[edge.second].rim = true;
     }
     return out;
   }
@@ -176,8 +195,9 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     if (!weights.empty()) return weights;
     Surroundings wider = around[n];
     for (int m : around[n].nodes)
-      wider.nodes.insert(around[m].nodes.begin(), around[m].nodes.end());
-    wider.nodes.erase(n);
+      wider.nodes.insert(wider.nodes.end(), around[m].nodes.begin(), around[m].nodes.end());
+    keep_once(wider.nodes);
+    wider.nodes.erase(std::find(wider.nodes.begin(), wider.nodes.end(), n));
     return quadratic_difference(label(n, 0), ring(mesh, wider, n, family, planes));
   }
 
@@ -191,7 +211,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
     const Vec3<double> sideways = cross(around.normal, along);
     const Vec3<double> across = (1 / detail::norm(sideways)) * sideways;
     double size = 0;
-    for (int m : around.nodes) size = std::max(size, detail::norm(mesh.nodes.get(m) - X));
+    for (int m : around.nodes) size = maximum(size, detail::norm(mesh.nodes.get(m) - X));
     const bool on_x = planes.x && std::abs(X.x) < 1e-9 * size;
     const bool on_y = planes.y && std::abs(X.y) < 1e-9 * size;
     std::vector<StencilNeighbour> out;
@@ -231,7 +251,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
       std::vector<std::array<int, Columns>> tuples;
       for (const Stencil& s : stencils) {
         std::array<int, Columns> t;
-        for (int k = 0; k < Columns; ++k) t[k] = s.node[std::min(k, used_ - 1)];
+        for (int k = 0; k < Columns; ++k) t[k] = s.node[minimum(k, used_ - 1)];
         tuples.push_back(t);
       }
       batches_ = IndexBatches<Columns, T>(tuples);
@@ -248,7 +268,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
           [this](int) {
             R largest(0);
             for (int k = 0; k < used_; ++k)
-              largest = std::max(largest, std::abs(constants_.at(0, k, 0)));
+              largest = maximum(largest, std::abs(constants_.at(0, k, 0)));
             return largest;
           },
           [this](int b, int lane) { return batches_[b].holds(lane); });
@@ -379,7 +399,7 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
                 forces.put(k, i + part, Narrow::load(w + k * lanes) * signed_copy<Mirrored>(m, k));
           }
         if (end > run.length)
-          forces.rest(Vectors == 1 ? 1 : used_, end - lanes,
+          forces.keep(Vectors == 1 ? 1 : used_, end - lanes,
                       batches_.active(batches_[run.first_batch + run.batches - 1]));
         if constexpr (Vectors == 1)
           forces.subtract_from(state.f, batches_, run, weights_);
@@ -408,7 +428,8 @@ class BendingSweep final : public ForceBlock<real_t<T>> {
   static constexpr int most = 32;  // nodes of an oblique stencil: the ring and its images
   std::vector<Group<3>> short_;
   std::vector<Group<most>> long_;
-  double omega_squared_ = 0;
+  int node_count_;
+  double areal_mass_, omega_squared_ = 0;
   int count_ = 0;
 };
 

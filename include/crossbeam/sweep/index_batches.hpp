@@ -1,9 +1,27 @@
 #pragma once
 /// @file
 /// Tuples of node numbers (elements, stencils) packed into batches that fill the SIMD lanes. Where
-/// consecutive tuples have consecutive nodes, as along a row of a structured mesh, a batch loads and
-/// stores whole packs; elsewhere it gathers. One mesh type therefore serves both.
+/// consecutive tuples have consecutive nodes, as along a row of a structured mesh, a batch loads
+/// and stores whole packs; elsewhere it gathers. One mesh type therefore serves both.
 /// Theory: docs/theory/sweep.md.
+///
+/// The words of the sweep, from small to large:
+///   tuple            node numbers of one element or stencil, one in each column
+///   lane             one number of a pack; idle where it holds no tuple
+///   mesh row         tuples whose nodes follow each other by one, as along a row of a rectangle
+///   batch            as many tuples as a pack has lanes. Contiguous: part of a mesh row, whose
+///                    nodes are loaded as they lie; gathered: any tuples, whose nodes are looked up
+///   run              batches of one kind that follow each other, few enough for the first-level
+///                    cache: what the short loops work on
+///   slot             lane of a run, numbered from lane 0 of its first batch
+///   line             columns of a run whose nodes lie less than `reach` apart: a node meets all
+///                    their forces at once
+///   level            range of node numbers, wider than any batch reaches (its bandwidth)
+///   stage            the batches whose highest node lies in one level: stages two or more apart
+///                    share no node
+///   band             levels that one thread works on (dynamics/step_order.hpp)
+///   steps in flight  time steps that go through the levels one behind the other, while those are
+///                    in the cache (dynamics/step_order.hpp)
 
 #include "crossbeam/base/simd.hpp"
 #include "crossbeam/mesh/arrays.hpp"
@@ -14,7 +32,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 namespace crossbeam {
@@ -47,7 +64,7 @@ class IndexBatches {
   /// ones.
   struct Run {
     int first_batch = 0, batches = 0;
-    int length = 0;  ///< places from lane 0 of the first batch to the last tuple
+    int length = 0;  ///< slots up to the last tuple
     bool contiguous = false;
     /// Columns in the order of their nodes. Those less than `reach` nodes apart share a line, so
     /// that a node meets all their forces at once.
@@ -56,8 +73,8 @@ class IndexBatches {
     int lines = 0;
   };
   static constexpr int reach = 8;
-  /// Places of a run, at most.
-  static constexpr int run_capacity = std::max(lanes, 256 / Columns / lanes * lanes);
+  /// Slots of a run, at most.
+  static constexpr int run_capacity = maximum(lanes, 256 / Columns / lanes * lanes);
 
   IndexBatches() = default;
   explicit IndexBatches(const std::vector<std::array<int, Columns>>& tuples) {
@@ -76,12 +93,11 @@ class IndexBatches {
         found = fill(batch, tuples, begin);
       }
       if (!found) {
-        const int some = std::min(lanes, count - begin);
+        const int some = minimum(lanes, count - begin);
         batch.held = all_lanes >> (lanes - some);
         batch.gather_row = static_cast<int>(table_.size()) / (Columns * lanes);
         for (int c = 0; c < Columns; ++c)
-          for (int l = 0; l < lanes; ++l)
-            table_.push_back(tuples[begin + std::min(l, some - 1)][c]);
+          for (int l = 0; l < lanes; ++l) table_.push_back(tuples[begin + minimum(l, some - 1)][c]);
       }
       batch.first_tuple = begin;
       if (!batch.is_full()) {
@@ -99,13 +115,13 @@ class IndexBatches {
   [[nodiscard]] int bandwidth() const {
     int widest = 0;
     for (int b = 0; b < size(); ++b) {
-      int low = std::numeric_limits<int>::max(), high = 0;
+      int low = (std::numeric_limits<int>::max)(), high = 0;
       for (int c = 0; c < Columns; ++c)
         for (int lane = 0; lane < batches_[b].length(); ++lane) {
-          low = std::min(low, node(b, c, lane));
-          high = std::max(high, node(b, c, lane));
+          low = minimum(low, node(b, c, lane));
+          high = maximum(high, node(b, c, lane));
         }
-      widest = std::max(widest, high - low);
+      widest = maximum(widest, high - low);
     }
     return widest;
   }
@@ -124,7 +140,7 @@ class IndexBatches {
       int highest = 0;
       for (int c = 0; c < Columns; ++c)
         for (int lane = 0; lane < batches_[b].length(); ++lane)
-          highest = std::max(highest, level(node(b, c, lane)));
+          highest = maximum(highest, level(node(b, c, lane)));
       return highest;
     };
     std::vector<std::vector<int>> members(static_cast<std::size_t>(levels));
@@ -153,7 +169,7 @@ class IndexBatches {
   /// Tuple in a lane; idle lanes repeat one of their batch.
   [[nodiscard]] int tuple(int b, int lane) const {
     const std::uint32_t up_to_lane = ~std::uint32_t(0) >> (31 - lane);
-    return batches_[b].first_tuple + std::max(std::popcount(batches_[b].held & up_to_lane) - 1, 0);
+    return batches_[b].first_tuple + maximum(std::popcount(batches_[b].held & up_to_lane) - 1, 0);
   }
 
   /// Node of a column in a lane up to the last that holds a tuple.
@@ -189,13 +205,13 @@ class IndexBatches {
     const real_t<U>* component[3];
     std::array<std::ptrdiff_t, Columns> column;
 
-    /// @param tuple place of lane 0 in the run
-    CROSSBEAM_INLINE Vec3<U> load(int k, std::ptrdiff_t tuple) const {
-      const std::ptrdiff_t at = column[k] + tuple;
+    /// @param slot of lane 0
+    CROSSBEAM_INLINE Vec3<U> load(int k, std::ptrdiff_t slot) const {
+      const std::ptrdiff_t at = column[k] + slot;
       return {U::load(component[0] + at), U::load(component[1] + at), U::load(component[2] + at)};
     }
-    CROSSBEAM_INLINE void load_all(std::ptrdiff_t tuple, Vec3<U> (&out)[Columns]) const {
-      unrolled<Columns>([&](auto k) CROSSBEAM_INLINE_LAMBDA { out[k] = load(k, tuple); });
+    CROSSBEAM_INLINE void load_all(std::ptrdiff_t slot, Vec3<U> (&out)[Columns]) const {
+      unrolled<Columns>([&](auto k) CROSSBEAM_INLINE_LAMBDA { out[k] = load(k, slot); });
     }
   };
   template <class U>
@@ -284,9 +300,11 @@ class IndexBatches {
     run.first_batch = b;
     run.contiguous = batches_[b].gather_row < 0;
     const auto& first = batches_[b].first;
-    std::iota(run.column.begin(), run.column.end(), std::uint8_t(0));
-    std::stable_sort(run.column.begin(), run.column.end(),
-                     [&](int p, int q) { return first[p] < first[q]; });
+    for (int c = 0; c < Columns; ++c) {  // sorted by insertion: there are few
+      int k = c;
+      for (; k > 0 && first[run.column[k - 1]] > first[c]; --k) run.column[k] = run.column[k - 1];
+      run.column[k] = static_cast<std::uint8_t>(c);
+    }
     int base = 0;
     for (int k = 0; k < Columns; ++k) {
       const int node = first[run.column[k]];

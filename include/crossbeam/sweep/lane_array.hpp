@@ -3,6 +3,7 @@
 /// Constants of the tuples of a sweep, one pack for each batch and component. Theory:
 /// docs/theory/sweep.md, [S-2].
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/mesh/arrays.hpp"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ class LaneArray {
   template <class Scale, class Counts>
   void collapse_if_uniform(const Scale& scale, const Counts& counts) {
     if (batches_ == 0) return;
-    const R tolerance = std::max(R(1e-11), 2 * std::numeric_limits<R>::epsilon());
+    const R tolerance = maximum(R(1e-11), 2 * std::numeric_limits<R>::epsilon());
     for (int b = 0; b < batches_; ++b)
       for (int c = 0; c < components_; ++c)
         for (int l = 0; l < lanes_v<T>; ++l)

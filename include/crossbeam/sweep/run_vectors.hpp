@@ -2,6 +2,7 @@
 /// @file
 /// The forces of one run of tuples on their way to the nodes. Theory: docs/theory/sweep.md.
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/sweep/index_batches.hpp"
 
 #include <algorithm>
@@ -27,20 +28,20 @@ class RunVectors {
       for (auto& component : vector) clear<front>(component);
   }
 
-  /// @param tuple place of lane 0 in the run; idle lanes must hold zeros
+  /// @param slot of lane 0; idle lanes must hold zeros
   template <class U>
-  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t tuple, const Vec3<U>& v) {
-    v.x.store(number_[vector][0] + front + tuple);
-    v.y.store(number_[vector][1] + front + tuple);
-    v.z.store(number_[vector][2] + front + tuple);
+  CROSSBEAM_INLINE void put(int vector, std::ptrdiff_t slot, const Vec3<U>& v) {
+    v.x.store(number_[vector][0] + front + slot);
+    v.y.store(number_[vector][1] + front + slot);
+    v.z.store(number_[vector][2] + front + slot);
   }
-  /// Zeros in the lanes without a tuple.
-  /// @param vectors the first ones; @param tuple place of lane 0 in the run
+  /// Zeros in the other lanes.
+  /// @param vectors the first ones; @param slot of lane 0
   template <class Mask>
-  void rest(int vectors, std::ptrdiff_t tuple, const Mask& active) {
+  void keep(int vectors, std::ptrdiff_t slot, const Mask& active) {
     for (int k = 0; k < vectors; ++k)
       for (auto& component : number_[k]) {
-        R* const at = component + front + tuple;
+        R* const at = component + front + slot;
         select(active, T::load(at), T(R(0))).store(at);
       }
   }
@@ -61,7 +62,7 @@ class RunVectors {
  private:
   static constexpr int reach = Batches::reach;
   // Loads reach up to `reach` numbers before the first and a pack beyond the last.
-  static constexpr int front = std::max(reach, lanes), back = std::max(reach, lanes) + lanes;
+  static constexpr int front = maximum(reach, lanes), back = maximum(reach, lanes) + lanes;
   static constexpr int size = front + Batches::run_capacity + back;
 
   template <int Count>
@@ -82,12 +83,13 @@ class RunVectors {
       const Line to{{out[0] + first[run.column[k]], out[1] + first[run.column[k]],
                      out[2] + first[run.column[k]]},
                     run.length + run.shift[run.line_end[line] - 1]};
-      switch (run.line_end[line] - k) {
-        case 1: line_of<Weighted, 1>(to, run, k, 1, weight); break;
-        case 2: line_of<Weighted, 2>(to, run, k, 2, weight); break;
-        case 3: line_of<Weighted, 3>(to, run, k, 3, weight); break;
-        default: line_of<Weighted, 0>(to, run, k, run.line_end[line] - k, weight);
-      }
+      const int columns = run.line_end[line] - k;
+      if (columns == 1)
+        line_of<Weighted, 1>(to, run, k, 1, weight);
+      else if (columns == 2)
+        line_of<Weighted, 2>(to, run, k, 2, weight);
+      else
+        line_of<Weighted, Columns == 3 ? 3 : 0>(to, run, k, columns, weight);
     }
   }
 
@@ -131,8 +133,8 @@ class RunVectors {
     // The nodes behind may be another thread's: they are not even written with what they had.
     if (i < to.nodes)
       unrolled<3>([&](auto c) CROSSBEAM_INLINE_LAMBDA {
-        const T rest = sum(c, i);
-        for (int lane = 0; lane < to.nodes - i; ++lane) out[c][i + lane] -= rest[lane];
+        const T last = sum(c, i);
+        for (int lane = 0; lane < to.nodes - i; ++lane) out[c][i + lane] -= last[lane];
       });
   }
 

@@ -17,7 +17,11 @@ template <class HeightFunction>
 class HeightSurface {
  public:
   HeightSurface(HeightFunction height, Side side)
-      : height_(std::move(height)), sign_(side == Side::above ? 1 : -1) {}
+      : height_(std::move(height)), sign_(side == Side::above ? 1 : -1) {
+    // An infinite bound is one: then no node is skipped.
+    if (const auto slope = height_.max_slope(); !(slope >= 0))
+      throw InputError("height.max_slope", detail::to_text(slope), "-", "a number >= 0");
+  }
 
   template <class T>
     requires Height<HeightFunction, T>

@@ -52,7 +52,7 @@ class HeightTable {
   template <class T>
     requires std::same_as<real_t<T>, R>
   CROSSBEAM_INLINE HeightSample<T> height(const T& x, const T& y) const {
-    const Place<T> a = locate(x_, x), b = locate(y_, y);
+    const SplineWeights<T> a = locate(x_, x), b = locate(y_, y);
     T h = T(R(0)), h_x = T(R(0)), h_y = T(R(0));
     for (int j = 0; j < 3; ++j) {
       T c0, c1, c2;
@@ -88,7 +88,7 @@ class HeightTable {
 
   /// Cell of a coordinate and the three spline weights there, with their derivatives [1/length].
   template <class T>
-  struct Place {
+  struct SplineWeights {
     int cell[lanes_v<T>];
     T weight[3], rate[3];
   };
@@ -166,7 +166,7 @@ class HeightTable {
           }
         const R here = square(along_x * x_.per_spacing) + square(along_y * y_.per_spacing);
         if (!(here <= bound)) bound = here;  // heights that overflowed end as infinite or no slope
-        if (!(bound <= std::numeric_limits<R>::max())) return bound;
+        if (!(bound <= (std::numeric_limits<R>::max)())) return bound;
       }
     return sqrt(bound);
   }
@@ -177,7 +177,7 @@ class HeightTable {
     return axis.mirror ? magnitude(t) : t;
   }
 
-  /// Equal but for rounding counts as flat: the spline's answer to an edge dies out by 0.17 per cell.
+  /// Equal but for rounding counts as flat: the spline's answer to an edge dies out by 0.17 a cell.
   void find_flat_part() {
     R largest(0);
     for (const R& c : coefficients_) largest = maximum(largest, magnitude(c));
@@ -201,7 +201,7 @@ class HeightTable {
   }
 
   template <class T>
-  CROSSBEAM_INLINE static Place<T> locate(const Axis& axis, const T& x) {
+  CROSSBEAM_INLINE static SplineWeights<T> locate(const Axis& axis, const T& x) {
     const T zero = T(R(0)), one = T(R(1)), half = T(R(1) / R(2));
     T t = (x - T(axis.origin)) * T(axis.per_spacing);
     T sign = one;
@@ -212,7 +212,7 @@ class HeightTable {
     // The first and last coefficient repeat their neighbour, so the clamped end has zero slope.
     t = select(t < zero, zero, t);
     t = select(t > T(R(axis.cells)), T(R(axis.cells)), t);
-    Place<T> p;
+    SplineWeights<T> p;
     constexpr R half_cell = R(1) / R(2);  // keeps the upper end in the last cell
     // A NaN coordinate looks up cell 0 and comes back as NaN through the weights.
     const auto inside = passive(select(t >= zero, t, zero));
@@ -223,13 +223,13 @@ class HeightTable {
     } else {
       base = truncate(minimum(inside, passive_t<T>(R(axis.cells) - half_cell)), p.cell);
     }
-    const T v = t - T(base), rest = one - v;
+    const T v = t - T(base), u = one - v;
     const T scale = sign * T(axis.per_spacing);
-    p.weight[0] = half * rest * rest;
-    p.weight[1] = half + v * rest;
+    p.weight[0] = half * u * u;
+    p.weight[1] = half + v * u;
     p.weight[2] = half * v * v;
-    p.rate[0] = -scale * rest;
-    p.rate[1] = scale * (rest - v);
+    p.rate[0] = -scale * u;
+    p.rate[1] = scale * (u - v);
     p.rate[2] = scale * v;
     return p;
   }

@@ -82,6 +82,7 @@ class Sphere {
     return detail::round_gap(p - detail::spread<T>(centre_), radius_, {R(0), R(0), R(1)});
   }
 
+  [[nodiscard]] R width() const { return R(2) * radius_; }
   [[nodiscard]] Sphere offset(R d) const { return {centre_, radius_, d}; }
 
  private:
@@ -116,16 +117,17 @@ class Cylinder {
     return detail::round_gap(arm - dot(arm, e) * e, radius_, across_);
   }
 
+  [[nodiscard]] R width() const { return R(2) * radius_; }
   [[nodiscard]] Cylinder offset(R d) const { return {point_, axis_, radius_, d}; }
 
  private:
   /// A direction square to the axis: the coordinate axis furthest from it, projected.
   static Vec3<R> across(const Vec3<R>& e) {
     const R x = magnitude(e.x), y = magnitude(e.y), z = magnitude(e.z);
-    const Vec3<R> far = z <= x && z <= y ? Vec3<R>{R(0), R(0), R(1)}
-                        : y <= x         ? Vec3<R>{R(0), R(1), R(0)}
-                                         : Vec3<R>{R(1), R(0), R(0)};
-    return detail::require_direction("cylinder.axis", far - dot(far, e) * e);
+    const Vec3<R> axis = z <= x && z <= y ? Vec3<R>{R(0), R(0), R(1)}
+                         : y <= x         ? Vec3<R>{R(0), R(1), R(0)}
+                                          : Vec3<R>{R(1), R(0), R(0)};
+    return detail::require_direction("cylinder.axis", axis - dot(axis, e) * e);
   }
 
   Vec3<R> point_;

@@ -37,6 +37,22 @@ concept HasFlatPart = requires(const S& surface, const Vec3<T>& point) {
   { surface.flat_gap(point) } -> std::same_as<SurfaceGap<T>>;
 };
 
+/// A tool that knows its width [length]: of all slabs between two parallel planes that contain it,
+/// the thinnest; infinite where there is none.
+template <class S>
+concept HasWidth = requires(const S& surface) {
+  { surface.width() } -> std::convertible_to<double>;
+};
+
+/// The width of a tool, and infinite where the tool does not say.
+template <class S>
+[[nodiscard]] double smallest_width(const S& surface) {
+  if constexpr (HasWidth<S>)
+    return static_cast<double>(surface.width());
+  else
+    return std::numeric_limits<double>::infinity();
+}
+
 /// A height z = h(x, y) with its gradient.
 template <class T>
 struct HeightSample {
@@ -62,13 +78,13 @@ namespace detail {
 /// Squared lengths below it do not have all their digits.
 template <class R>
 constexpr R least_square() {
-  return std::numeric_limits<R>::min() / std::numeric_limits<R>::epsilon();
+  return (std::numeric_limits<R>::min)() / std::numeric_limits<R>::epsilon();
 }
 
 /// A length whose square is still a number.
 template <class R>
 R require_square(const std::string& field, R value, const std::string& unit) {
-  const R most = std::numeric_limits<R>::max() * std::numeric_limits<R>::epsilon();
+  const R most = (std::numeric_limits<R>::max)() * std::numeric_limits<R>::epsilon();
   if (!(value * value <= most))
     throw InputError(field, to_text(value), unit, "a number whose square is one too");
   return value;

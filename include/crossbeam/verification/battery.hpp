@@ -1,9 +1,9 @@
 #pragma once
 /// @file
-/// A battery: claims that anything of a kind must satisfy - a cell, a yarn law, a shear law, a
-/// membrane law, an element - measured on one subject, a user's own, and collected for a table and a
-/// report. The batteries themselves: cell_battery.hpp, law_battery.hpp, element_battery.hpp; how to
-/// use them: docs/theory/own_laws.md.
+/// A battery is a list of claims that anything of a kind must satisfy: a cell, a yarn law, a shear
+/// law, a membrane law, an element. It is measured on one subject, a user's own, and collected for
+/// a table and a report. The batteries are in cell_battery.hpp, law_battery.hpp and
+/// element_battery.hpp; docs/theory/own_laws.md shows how to use them.
 
 #include "crossbeam/verification/evidence.hpp"
 #include "crossbeam/verification/random.hpp"
@@ -100,7 +100,8 @@ class Battery {
 };
 
 /// Taylor slopes at many states. A remainder that vanishes to round-off from the start, because the
-/// function is the polynomial itself, passes; one that leaves no decade above round-off says nothing.
+/// function is the polynomial itself, passes; one that leaves no decade above round-off says
+/// nothing.
 class TaylorSlopes {
  public:
   explicit TaylorSlopes(int slope) : slope_(slope) {}

@@ -85,9 +85,9 @@ struct CellScale {
         L2(static_cast<double>(cell.parameters().weft.length)),
         width(cell.parameters().symmetry * L1 * L2),
         stiffness(static_cast<double>(cell.membrane_stiffness_bound()) * width /
-                  (std::min(L1, L2) * std::min(L1, L2))) {}
-  [[nodiscard]] double force() const { return stiffness * std::max(L1, L2); }
-  [[nodiscard]] double energy() const { return force() * std::max(L1, L2); }
+                  (minimum(L1, L2) * minimum(L1, L2))) {}
+  [[nodiscard]] double force() const { return stiffness * maximum(L1, L2); }
+  [[nodiscard]] double energy() const { return force() * maximum(L1, L2); }
 };
 
 template <class Cell>
@@ -129,10 +129,10 @@ void verify_cell_derivatives(Battery& battery, const Cell& cell, const CellScale
     const D a = D::variable(u1, 0), b = D::variable(u2, 1);
     const auto dual = cell.solve(a, b);
     const D energy = cell.energy(a, b, dual);
-    duals.see(std::max(std::abs(energy.d[0] - F.F1), std::abs(energy.d[1] - F.F2)) / scale.force());
+    duals.see(maximum(std::abs(energy.d[0] - F.F1), std::abs(energy.d[1] - F.F2)) / scale.force());
     duals.see(
-        std::max({std::abs(dual.forces.F1.d[0] - K.K11), std::abs(dual.forces.F1.d[1] - K.K12),
-                  std::abs(dual.forces.F2.d[0] - K.K12), std::abs(dual.forces.F2.d[1] - K.K22)}) /
+        (std::max)({std::abs(dual.forces.F1.d[0] - K.K11), std::abs(dual.forces.F1.d[1] - K.K12),
+                    std::abs(dual.forces.F2.d[0] - K.K12), std::abs(dual.forces.F2.d[1] - K.K22)}) /
         scale.stiffness);
   }
   one.measure(battery, claims::cell_forces, 0.1, "energy less its linear part: slope off 2");
@@ -183,7 +183,7 @@ void verify_cell_loops(Battery& battery, const Cell& cell, const CellScale& scal
           const double u2 = scale.L2 * (path[side][1] + s * d2);
           const auto answer = cell.solve(u1, u2);
           sum += w * (answer.forces.F1 * scale.L1 * d1 + answer.forces.F2 * scale.L2 * d2);
-          peak = std::max(peak, cell.energy(u1, u2, answer));
+          peak = maximum(peak, cell.energy(u1, u2, answer));
         }
     }
     work.see(peak > 0 ? std::abs(sum) / peak : std::numeric_limits<double>::quiet_NaN(), sample);
@@ -195,8 +195,8 @@ template <class Cell>
 void verify_cell_solver(Battery& battery, const Cell& cell, const CellScale& scale) {
   Random random(5003);
   const auto finite = [](const CellForces<double>& f) {
-    return std::isfinite(f.F1) && std::isfinite(f.F2) && std::isfinite(f.w1) &&
-           std::isfinite(f.w2) && std::isfinite(f.q);
+    return is_finite(f.F1) && is_finite(f.F2) && is_finite(f.w1) && is_finite(f.w2) &&
+           is_finite(f.q);
   };
   double failures = 0;
   Curve sweeps{"states", {}, {}, Curve::Style::line};
@@ -247,7 +247,7 @@ void verify_cell_solver(Battery& battery, const Cell& cell, const CellScale& sca
     const auto packed = cell.solve(u1, u2).forces;
     for (int i = 0; i < 4; ++i) {
       const auto alone = cell.solve(u1[i], u2[i]).forces;
-      lanes.see(std::max(std::abs(packed.F1[i] - alone.F1), std::abs(packed.F2[i] - alone.F2)) /
+      lanes.see(maximum(std::abs(packed.F1[i] - alone.F1), std::abs(packed.F2[i] - alone.F2)) /
                 scale.force());
     }
   }
@@ -271,10 +271,10 @@ void verify_cell_stiffness(Battery& battery, const Cell& cell, const CellScale& 
                                        K.K22 * scale.L2 * scale.L2 / scale.width,
                                        K.K12 * scale.L1 * scale.L2 / scale.width)[1];
       const double tension =
-          std::max({s.forces.F1 * scale.L1, s.forces.F2 * scale.L2, 0.0}) / scale.width;
-      above = std::max(above, (most - tension) / bound);
+          (std::max)({s.forces.F1 * scale.L1, s.forces.F2 * scale.L2, 0.0}) / scale.width;
+      above = maximum(above, (most - tension) / bound);
       if (s.forces.F1 > 1e-3 * scale.force() && s.forces.F2 > 1e-3 * scale.force())
-        unstable = std::max(unstable, -least_and_most(K.K11, K.K22, K.K12)[0] / scale.stiffness);
+        unstable = maximum(unstable, -least_and_most(K.K11, K.K22, K.K12)[0] / scale.stiffness);
     }
   battery.measure(claims::cell_bound, above, 1.001,
                   "largest eigenvalue less tension, over the bound");
@@ -312,7 +312,7 @@ void verify_cell(Battery& battery, const Cell& cell) {
   const detail::CellScale scale(cell);
   const auto rest = cell.solve(0.0, 0.0);
   battery.measure(claims::cell_rest,
-                  std::max(std::abs(rest.forces.F1), std::abs(rest.forces.F2)) / scale.force(),
+                  maximum(std::abs(rest.forces.F1), std::abs(rest.forces.F2)) / scale.force(),
                   1e-13, "forces at rest, relative");
   battery.measure(claims::cell_rest, std::abs(cell.energy(0.0, 0.0, rest)) / scale.energy(), 1e-13,
                   "energy at rest, relative");
@@ -374,9 +374,9 @@ void verify_axial_law(Battery& battery, const Law& law) {
     for (int i = 0; i < 4; ++i) e.set(i, random.uniform(-0.05, 0.05));
     const P N = law.tension(e, P(1.0)), k = law.modulus(e, P(1.0)), W = law.energy(e, P(1.0));
     for (int i = 0; i < 4; ++i)
-      lanes.see(std::max({std::abs(N[i] - law.tension(e[i], 1.0)),
-                          std::abs(k[i] - law.modulus(e[i], 1.0)),
-                          std::abs(W[i] - law.energy(e[i], 1.0))}));
+      lanes.see((std::max)({std::abs(N[i] - law.tension(e[i], 1.0)),
+                            std::abs(k[i] - law.modulus(e[i], 1.0)),
+                            std::abs(W[i] - law.energy(e[i], 1.0))}));
   }
   battery.measure(claims::yarn_lanes, lanes, 1e-15, "tension, modulus and energy of the lanes");
 }

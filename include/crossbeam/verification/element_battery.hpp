@@ -8,6 +8,7 @@
 #include "crossbeam/verification/battery.hpp"
 #include "crossbeam/verification/patch.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <numbers>
@@ -52,7 +53,7 @@ void verify_element(Battery& battery, int spurious_modes = 0) {
   const MembraneOptions options{0.3, 0};
   const FibreAngle<double> angle(between);
   const WovenMembrane law(CrossedBeamCell<double>(CellParameters<double>{}),
-                          ConstantShear<double>(0.02, angle), angle);
+                          ConstantShear<double>(0.02), angle);
   using Law = decltype(law);
   using PlainLaw = std::remove_const_t<Law>;
   Random random(5021);

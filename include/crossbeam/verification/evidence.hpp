@@ -138,7 +138,7 @@ inline std::string to_json(const Map& m) {
       .text();
 }
 
-/// Appends one line to a log; false when it cannot be written. Programs may run side by side on the
+/// Appends one line to a log; false when it cannot be written. Several programs may write the
 /// same log: append mode and one write keep the lines whole.
 inline bool append_line(const std::string& path, const std::string& line) {
   std::FILE* log = std::fopen(path.c_str(), "a");

@@ -3,6 +3,7 @@
 /// What every membrane law and every shear law must satisfy, measured on one of them; and the whole
 /// way of a yarn law: the law itself, the cell it makes, the membrane that cell makes.
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/law/woven_membrane.hpp"
 #include "crossbeam/verification/cell_battery.hpp"
@@ -129,7 +130,7 @@ void verify_shear_layer(Battery& battery, const Shear& shear, const FibreAngle<d
     const double remaining = reference.delta - gamma;
     if (remaining < 0.3 || remaining > std::numbers::pi - 0.3) continue;
     const double before = W(gamma - step), at = W(gamma), after = W(gamma + step);
-    modulus = std::max(modulus, (after - 2 * at + before) / (step * step));
+    modulus = maximum(modulus, (after - 2 * at + before) / (step * step));
     traction.x.push_back(gamma * 180 / std::numbers::pi);
     traction.y.push_back((after - before) / (2 * step));
   }
@@ -216,7 +217,7 @@ void verify_law_stability(Battery& battery, const Law& law) {
       const double along = n.dot(r.S * n);
       const Matrix2<double> A =
           along * Matrix2<double>::Identity() + strain.transpose() * r.dS_dE * strain;
-      least = std::min(
+      least = (std::min)(
           {least, along, (A(0, 0) + A(1, 1)) / 2 - std::hypot((A(0, 0) - A(1, 1)) / 2, A(0, 1))});
     }
   }
@@ -256,8 +257,8 @@ void verify_law(Battery& battery, const Law& law) {
     deficit.see(-W / stiffness, sample);
     using P = Pack<double, 4>;
     const auto packed = law.stress(law.evaluate(FibreStrain<P>{P(b.b11), P(b.b22), P(b.b12)}));
-    lanes.see(std::max({std::abs(packed.m11[3] - g(0)), std::abs(packed.m22[3] - g(1)),
-                        std::abs(2 * packed.m12[3] - g(2))}) /
+    lanes.see((std::max)({std::abs(packed.m11[3] - g(0)), std::abs(packed.m22[3] - g(1)),
+                          std::abs(2 * packed.m12[3] - g(2))}) /
                   stiffness,
               sample);
   }
@@ -289,7 +290,7 @@ void verify_yarn(Battery& battery, const Law& law, const CellParameters<double>&
   const CrossedBeamCell<double, Contact::unilateral, Law> cell(fabric, law, law);
   verify_cell(battery, cell);
   const auto right = FibreAngle<double>::right();
-  verify_law(battery, WovenMembrane(cell, ConstantShear<double>(0.001, right), right));
+  verify_law(battery, WovenMembrane(cell, ConstantShear<double>(0.001), right));
 }
 
 /// The whole way of a shear law: B-SHEAR on itself and B-LAW on a membrane of Table 1 with it.

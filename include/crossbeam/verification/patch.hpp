@@ -3,6 +3,7 @@
 /// Small meshes and force sums for verifying elements: distorted patches with fibres skew to their
 /// edges, a quadratic law without a cell, and the border tractions of a homogeneous stress.
 
+#include "crossbeam/base/scalar.hpp"
 #include "crossbeam/element/membrane.hpp"
 #include "crossbeam/model/nodal_state.hpp"
 #include "crossbeam/sweep/membrane_sweep.hpp"
@@ -127,7 +128,7 @@ inline Points gradient(ForceBlock<double>& block, NodalState<double>& state) {
   return out;
 }
 inline double energy(const ForceBlock<double>& block, const NodalState<double>& state) {
-  InternalEnergy e;
+  EnergyLedger e;
   block.add_energy(state, e);
   return e.stored();
 }
@@ -141,7 +142,7 @@ inline Points map(const Points& X, const Eigen::Matrix3d& A,
 
 inline double largest(const Points& v) {
   double out = 0;
-  for (const auto& p : v) out = std::max(out, p.norm());
+  for (const auto& p : v) out = maximum(out, p.norm());
   return out;
 }
 

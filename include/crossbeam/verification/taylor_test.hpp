@@ -16,8 +16,8 @@
 namespace crossbeam::verification {
 
 struct TaylorResult {
-  /// Largest |slope - expected| over the best run of halvings that spans a decade; infinite when
-  /// there is no such run above round-off.
+  /// Largest |slope - expected| over the best sequence of halvings that spans a decade; infinite
+  /// when there is no such sequence above round-off.
   double deviation = std::numeric_limits<double>::infinity();
   std::vector<double> steps, remainders;  ///< down to where round-off takes over, for a plot
   std::string table;                      ///< eps, remainder, slope; for the failure message

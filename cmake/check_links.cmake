@@ -1,0 +1,31 @@
+# Fails when a page links to a file of the repository that does not exist:
+#   cmake -DROOT=<repository> -P cmake/check_links.cmake
+cmake_minimum_required(VERSION 3.24)
+
+file(GLOB pages "${ROOT}/*.md" "${ROOT}/docs/*.md" "${ROOT}/docs/*/*.md" "${ROOT}/verify/*.md"
+  "${ROOT}/verify/*/*.md" "${ROOT}/.github/*.md" "${ROOT}/.github/*/*.md")
+set(faults "")
+set(count 0)
+foreach(page IN LISTS pages)
+  file(READ "${page}" text)
+  string(REPLACE ";" "," text "${text}")
+  string(REPLACE "[" "" text "${text}")
+  string(REPLACE "]" "<end>" text "${text}")
+  cmake_path(GET page PARENT_PATH folder)
+  string(REGEX MATCHALL "<end>\\([^() ]+\\)" links "${text}")
+  foreach(link IN LISTS links)
+    string(REGEX REPLACE "^<end>\\(([^#)]*).*$" "\\1" target "${link}")
+    if(target STREQUAL "" OR target MATCHES "^[a-z]+:")
+      continue()
+    endif()
+    math(EXPR count "${count} + 1")
+    if(NOT EXISTS "${folder}/${target}")
+      string(APPEND faults "  ${page}: no file ${target}\n")
+    endif()
+  endforeach()
+endforeach()
+
+if(faults)
+  message(FATAL_ERROR "links:\n${faults}")
+endif()
+message(STATUS "links: ${count} lead to files of the repository")

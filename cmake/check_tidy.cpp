@@ -1,0 +1,2 @@
+// What check_tidy.cmake gives to clang-tidy.
+#include "crossbeam/crossbeam.hpp"
