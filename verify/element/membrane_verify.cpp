@@ -417,6 +417,81 @@ TEST_CASE(
   claim("V-ELEM-05", wrong, 0, "zero-energy modes more or fewer than 6, 9, 6, 7");
 }
 
+TEST_CASE("V-ELEM-10 the bound of the step knows the hourglass stiffness") {
+  VERIFY_RANDOM(random, 110);
+  Worst alone, share;
+  const LinearLaw<double> law;
+  for (const double side : {0.1, 3.0, 50.0})
+    for (const bool distorted : {false, true}) {
+      CAPTURE(side);
+      const Points X = grid(1, 1, side, distorted ? distortion : 0, random);
+      const auto m = mesh<4>(X, cells<4>(1, 1), 0.4, pi / 2);
+      const auto bound = [&](double modulus) {
+        return sweep_of<OnePointKind>(m, law, {modulus, 0}).omega_squared();
+      };
+      // The hourglass is what no affine field is: orthogonal to 1, x and y over the corners. Out
+      // of the plane no yarn feels it, and its squared frequency is 2 W / sum m u^2.
+      Eigen::Matrix<double, 3, 4> affine;
+      for (int n = 0; n < 4; ++n) affine.col(n) = Vector3d(1, X[n].x(), X[n].y());
+      const Eigen::Vector4d u = Eigen::FullPivLU<decltype(affine)>(affine).kernel().col(0);
+      constexpr double modulus = 1e3;
+      auto sweep = sweep_of<OnePointKind>(m, law, {modulus, 0});
+      Points x = X;
+      for (int n = 0; n < 4; ++n) x[n].z() += 1e-2 * side * u[n];
+      InternalEnergy e;
+      sweep.add_energy(state_at(m, x), e);
+      const double mass = areal_mass * m.area(0) / 4;
+      const double hourglass = 2 * e.hourglass / (mass * 1e-4 * side * side * u.squaredNorm());
+      // In a square the hourglass is a mode of its own.
+      if (!distorted) alone.see(std::abs(bound(modulus) / hourglass - 1), side);
+      // The sum of two stiffnesses has a frequency between the higher one and the sum of both.
+      CHECK(bound(modulus) >= hourglass * (1 - 1e-12));
+      CHECK(bound(modulus) <= (hourglass + bound(0)) * (1 + 1e-12));
+      share.see(bound(0) / hourglass, side);
+    }
+  share.claim("V-ELEM-10", 0.1, "bound without hourglass control over the hourglass's frequency");
+  alone.claim("V-ELEM-10", 1e-12, "bound of a square against the frequency of its hourglass mode");
+}
+
+TEST_CASE("V-ELEM-11 a point's forces are those of its stress, added to what is there") {
+  VERIFY_RANDOM(random, 111);
+  constexpr int M = 2, K = 3;
+  Worst added;
+  for (int sample = 0; sample < 20; ++sample) {
+    Vec3<double> D[K], R[K];
+    Points before;
+    for (int k = 0; k < K; ++k) {
+      D[k] = vec3(random.vector(1));
+      before.push_back(random.vector(1));
+      R[k] = vec3(before.back());
+    }
+    PointLanes<double, M> point{};
+    for (int k = 0; k < M; ++k) {
+      point.t1[k] = random.uniform(-1, 1);
+      point.t2[k] = random.uniform(-1, 1);
+    }
+    point.weight = random.uniform(0.5, 2);
+    const FibreStress<double> stress{random.uniform(-1, 1), random.uniform(-1, 1),
+                                     random.uniform(-1, 1)};
+    add_point_forces(PointKinematics<double, M, K>(D, point), stress, point, R);
+    // [E-3]: f_i = sum_k t_ik D_k, the generalised force on D_k is weight m^{ij} f_j t_ik.
+    Eigen::Matrix<double, 3, M> vectors;
+    Eigen::Matrix<double, M, 2> t;
+    for (int k = 0; k < M; ++k) {
+      vectors.col(k) = eigen(D[k]);
+      t.row(k) << point.t1[k], point.t2[k];
+    }
+    Eigen::Matrix2d m;
+    m << stress.m11, stress.m12, stress.m12, stress.m22;
+    const Eigen::Matrix<double, 3, M> force = point.weight * vectors * t * m * t.transpose();
+    for (int k = 0; k < K; ++k) {
+      const Vector3d expected = before[k] + (k < M ? Vector3d(force.col(k)) : Vector3d::Zero());
+      added.see((eigen(R[k]) - expected).norm(), sample, k);
+    }
+  }
+  added.claim("V-ELEM-11", 1e-14, "forces of size 1 against the product of the matrices");
+}
+
 TEST_CASE("V-ELEM-07 fibres at 45 degrees lock an element of 2x2 points and not one of one point") {
   // Warp and weft as the two families of a translation surface in the plane, x = a(s) + b(t) with
   // a and b curves in their own arc length: no yarn is strained anywhere, the shear angle varies.

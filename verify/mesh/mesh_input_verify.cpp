@@ -98,6 +98,16 @@ TEST_CASE("V-MESH-01 a bad mesh is refused, naming element or node, value and ra
          m.X[5] = {4, 1, 0};
        },
        "mesh.elements[1] corner 2", "-", "> 0"},
+      {"first corner pushed in",
+       [](Input& m) {
+         m.X[0] = {2, 2, 0};
+       },
+       "mesh.elements[0] corner 0", "-", "> 0"},
+      {"last corner pushed in",
+       [](Input& m) {
+         m.X[3] = {2, 1, 0};
+       },
+       "mesh.elements[0] corner 3", "-", "> 0"},
       // Clockwise corners turn the normal; warp and weft then come the wrong way round.
       {"element numbered clockwise",
        [](Input& m) {
@@ -127,6 +137,11 @@ TEST_CASE("V-MESH-01 a bad mesh is refused, naming element or node, value and ra
       {"warp 10 deg out of the plane",
        [](Input& m) {
          m.fibres[0].warp = {std::cos(pi / 18), 0, std::sin(pi / 18)};
+       },
+       "mesh.fibres[0].warp angle to the element's plane", "10", "0 to 5"},
+      {"warp 10 deg below the plane",
+       [](Input& m) {
+         m.fibres[0].warp = {std::cos(pi / 18), 0, -std::sin(pi / 18)};
        },
        "mesh.fibres[0].warp angle to the element's plane", "10", "0 to 5"},
   };
@@ -171,6 +186,47 @@ TEST_CASE("V-MESH-01 a bad mesh is refused, naming element or node, value and ra
   builds(bending(0, infinity), "bending.weft", "inf", ">= 0");
   builds([] { rectangle(10, 10, 0, 3); }, "rectangle.elements", "0 x 3", "1 x 1 or more");
   builds([] { rectangle(-1, 10, 2, 3); }, "rectangle.width", "-1", "> 0");
+  builds([] { rectangle(10, -1, 2, 3); }, "rectangle.length", "-1", "> 0");
+
+  // Slivers, on both sides of the least area of 1e-9 of the longest edge squared: whichever edge is
+  // the longest, however large it is and wherever it lies.
+  for (const double unit : {1e-3, 1.0, 1e3})
+    for (int longest = 0; longest < 4; ++longest) {
+      const auto sliver = [&](double height) {
+        const std::vector<Vec3<double>> corners{{10 * unit, 0, 0},
+                                                {13 * unit, 0, 0},
+                                                {12 * unit, height * unit, 0},
+                                                {11 * unit, height * unit, 0}};
+        std::array<int, 4> element;
+        for (int a = 0; a < 4; ++a) element[a] = (a + longest) % 4;
+        return Mesh<4>(corners, {element}, {{{1, 0, 0}, {0, 1, 0}}});
+      };
+      builds([&] { sliver(2.24e-9); }, "mesh.elements[0] area", "", "> 0");
+      CHECK_NOTHROW(sliver(2.26e-9));
+    }
+  // 5 deg out of the plane are the limit, for fibres of any length.
+  for (const double length : {0.01, 1.0, 1.4, 1.9, 77.0})
+    for (const double side : {-1.0, 1.0}) {
+      const auto tilted = [&](double degrees) {
+        Input input;
+        const double angle = degrees * pi / 180;
+        input.fibres[1].weft = {0, length * std::cos(angle), side * length * std::sin(angle)};
+        static_cast<void>(input.build());
+      };
+      builds([&] { tilted(5.01); }, "mesh.fibres[1].weft angle to the element's plane", "5.0",
+             "0 to 5");
+      CHECK_NOTHROW(tilted(4.99));
+    }
+  // Along the normal, whose product with it rounds to more than the lengths' now and then.
+  VERIFY_RANDOM(random, 302);
+  for (int sample = 0; sample < 200; ++sample) {
+    const Eigen::Matrix3d Q = random.rotation();
+    Input input;
+    for (auto& X : input.X) X = vec3(Q * eigen(X));
+    for (auto& f : input.fibres) f = {vec3(Q.col(2)), vec3(Q.col(1))};
+    builds([&] { static_cast<void>(input.build()); },
+           "mesh.fibres[0].warp angle to the element's plane", "", "0 to 5");
+  }
   claim("V-MESH-01", accepted, 0, "bad inputs that were not refused with field, value and range");
 }
 
@@ -201,8 +257,62 @@ TEST_CASE(
   directions.see((eigen(m.fibres[0].warp) - direction(0)).norm());
   directions.see((eigen(m.fibres[0].weft) - direction(std::atan2(5, 3))).norm());
   directions.see(std::abs(m.fibre_angle(0) - std::atan2(5, 3)));
+  // In the plane of x and z, and of a length whose square no double holds.
+  for (const double length : {1e-300, 1.0, 1e300}) {
+    Input upright;
+    for (auto& X : upright.X) X = {X.x, 0, X.y};
+    for (auto& f : upright.fibres) f = {{length, 0, 0}, {0, 0, length}};
+    const auto turned = upright.build();
+    directions.see((eigen(turned.fibres[1].warp) - Eigen::Vector3d::UnitX()).norm(), length);
+    directions.see((eigen(turned.fibres[1].weft) - Eigen::Vector3d::UnitZ()).norm(), length);
+  }
+  // Nodes are stored up to a multiple of the padding, and by as many again.
+  for (int count : {1, array_padding - 1, array_padding, array_padding + 1, 1000}) {
+    const NodeVectors<double> nodes(count);
+    for (const auto* component : {&nodes.x, &nodes.y, &nodes.z}) {
+      const int size = static_cast<int>(component->size());
+      CHECK(size % array_padding == 0);
+      CHECK(size >= count + array_padding);
+      CHECK(size < count + 2 * array_padding);
+    }
+  }
   areas.claim("V-MESH-02", 1e-14, "area against the shoelace formula, relative");  // 20 terms
   directions.claim("V-MESH-02", 1e-15, "fibres are unit vectors in the plane");
+}
+
+TEST_CASE("V-MESH-05 mirror planes hold the nodes on them, and only across") {
+  // Not a square, so that neither the planes nor the sides can be exchanged unnoticed.
+  constexpr int nx = 3, ny = 5;
+  const auto m = rectangle(30, 20, nx, ny);
+  int wrong = 0, held = 0;
+  for (const bool x : {false, true})
+    for (const bool y : {false, true}) {
+      const auto constraints = symmetry_constraints(m, {x, y});
+      NodalState<double> state(m, areal_mass, constraints);
+      for (int n = 0; n < m.node_count; ++n) {
+        const auto X = m.nodes.get(n);
+        const auto free = state.free.get(n);
+        wrong += free.x != ((x && X.x == 0) ? 0 : 1);
+        wrong += free.y != ((y && X.y == 0) ? 0 : 1);
+        wrong += free.z != 1;
+      }
+      // One constraint for a node, that on both planes included.
+      const int expected = (x ? ny + 1 : 0) + (y ? nx + 1 : 0) - (x && y ? 1 : 0);
+      CHECK(static_cast<int>(constraints.size()) == expected);
+      held += expected;
+    }
+  REQUIRE(held == 6 + 4 + 9);
+
+  // On a plane is what is within the tolerance of it, on either side.
+  Input input;
+  for (auto& X : input.X) X = {X.x - 3, X.y + 1, X.z};
+  input.X[1].x = 0.9e-9;
+  input.X[4].x = -0.9e-9;
+  CHECK(symmetry_constraints(input.build(), {true, true}).size() == 2);
+  input.X[4].x = -1.1e-9;
+  CHECK(symmetry_constraints(input.build(), {true, true}).size() == 1);
+  CHECK(symmetry_constraints(input.build(), {true, true}, 1.2e-9).size() == 2);
+  claim("V-MESH-05", wrong, 0, "components of nodes that are held and should not be, or not held");
 }
 
 TEST_SUITE_END();
