@@ -157,7 +157,9 @@ class SceneFile {
   }
 
   /// Whether the scene's cells are followed from step to step.
-  [[nodiscard]] bool follows() const { return fabric_.cell_solve == drape::CellSolve::follow; }
+  [[nodiscard]] bool follows() const {
+    return fabric_.cell_solve == crossbeam::drape::CellSolve::follow;
+  }
 
   /// Calls `use(law, iterated)` with the scene's law in the numbers R.
   template <class R, class Use>
