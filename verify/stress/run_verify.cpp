@@ -301,7 +301,7 @@ TEST_CASE("V-STRESS-08 runs under blows: the ledger closes, or the run stops and
         ToolMotion::free_under(
             [kind, value](double t) { return kind == 5 && t > 1e-3 ? value : -0.01; }, 1e-3, 1),
         contact, m.node_count));
-    CentralDifference<T> run(std::move(model), TimeStep::fraction(0.5));
+    CentralDifference<Lane> run(std::move(model), TimeStep::fraction(0.5));
     const End end = advance(run, 40, [&](int step, NodalState<double>& s) {
       if (step != static_cast<int>(when)) return;
       if (kind == 0) s.x.x[node] = value;
