@@ -5,7 +5,6 @@ report/report.py, --quick by quick.py.
 """
 
 import argparse
-import hashlib
 import json
 import os
 import subprocess
@@ -93,24 +92,14 @@ def run_mutants(*arguments):
                          OUT / "mutation.json", "--jobs", process.jobs(), *arguments])
 
 
-def headers_changed(record, include=ROOT / "include"):
-    """The headers that are not as they were when the mutation run of the record was made."""
-    return sorted(name for name, digest in record.get("headers", {}).items()
-                  if not (include / name).exists()
-                  or hashlib.sha256((include / name).read_bytes()).hexdigest() != digest)
-
-
 def recorded_mutation():
     """The record of the last mutation run, with the headers changed since, as a file for the report;
     None where there is no record."""
-    record = MUTATION / "record.json"
-    if not record.exists():
-        return None
-    text = json.loads(record.read_text(encoding="utf-8"))
     file = OUT / "mutation-record.json"
-    file.write_text(json.dumps({**text, "recorded": True, "changed": headers_changed(text)}),
-                    encoding="utf-8")
-    return file
+    file.unlink(missing_ok=True)
+    if (MUTATION / "record.json").exists():
+        process.call([sys.executable, MUTATION / "record.py", "--out", file])
+    return file if file.exists() else None
 
 
 def mutation(parts, full):

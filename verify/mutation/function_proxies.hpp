@@ -14,7 +14,7 @@ namespace crossbeam::mutation {
   struct Name {                                                                          \
     int site;                                                                            \
     template <class A, class... B>                                                       \
-    CROSSBEAM_PROXY auto operator()(const A& a, const B&... b) const {                   \
+    CROSSBEAM_PROXY constexpr auto operator()(const A& a, const B&... b) const {         \
       using namespace std_and_crossbeam;                                                 \
       auto v = plain(as_written(a, b...));                                               \
       if (variant(site)) {                                                               \
@@ -43,15 +43,15 @@ using std::sin;
 using std::sqrt;
 
 template <class M, class A, class B>
-CROSSBEAM_PROXY auto other_choice(const M& m, const A& a, const B& b) {
+CROSSBEAM_PROXY constexpr auto other_choice(const M& m, const A& a, const B& b) {
   return select(m, b, a);
 }
 template <class A, class... B>
-CROSSBEAM_PROXY A argument(const A& a, const B&...) {
+CROSSBEAM_PROXY constexpr A argument(const A& a, const B&...) {
   return a;
 }
 template <class A>
-CROSSBEAM_PROXY auto crossed_back(const A& a, const A& b) {
+CROSSBEAM_PROXY constexpr auto crossed_back(const A& a, const A& b) {
   return cross(b, a);
 }
 }  // namespace std_and_crossbeam

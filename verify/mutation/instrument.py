@@ -23,7 +23,7 @@ SHORTER = {
 # Every folder that computes belongs to one suite: a copy of the headers, and the tests that judge it.
 SUITES = {
     "kernels": ("kinematics", "cell", "law", "element"),
-    "assembly": ("base", "tools", "contact", "mesh", "model", "sweep", "dynamics"),
+    "assembly": ("base", "tools", "contact", "mesh", "model", "sweep", "dynamics", "simulation"),
 }
 # Adapters need a library of others, and the verification's own headers are tests.
 FOLDERS_LEFT_ALONE = ("adapters", "verification")
@@ -34,8 +34,6 @@ SCALAR = "crossbeam/base/scalar.hpp"
 KEYWORDS = {"auto", "break", "case", "const", "constexpr", "continue", "decltype", "default", "delete",
             "do", "else", "for", "goto", "if", "new", "operator", "return", "static", "struct", "switch",
             "template", "throw", "typename", "using", "while"}
-# Functions that are constexpr for some caller, and computed at run time by others.
-CONSTEXPR_AT_RUN_TIME = ("padded", "select")
 
 TOKEN = re.compile(
     r"""(?P<space>\s+)
@@ -127,7 +125,7 @@ class Members(set):
 
 class Token:
     __slots__ = ("kind", "text", "line", "before", "after", "live", "index", "loop", "insert",
-                 "ahead", "behind", "classes")
+                 "ahead", "behind", "classes", "constant")
 
     def __init__(self, kind, text, line):
         self.kind, self.text, self.line = kind, text, line
@@ -137,6 +135,7 @@ class Token:
         self.loop = False   # in the condition of a for loop
         self.insert = None  # instrumented text
         self.ahead = self.behind = ""  # what stands before and after it
+        self.constant = False  # in a function that may be evaluated by the compiler
         self.classes = ()   # the scopes it stands in, each the set of names declared there
 
 
@@ -193,11 +192,12 @@ def mark(tokens, all_classes=None):
     """Sets `live` in the bodies of functions and in the initialisers of constructors, outside what
     is decided at compile time and outside refusals of input. The names that each class declares are
     added to `all_classes`."""
-    stack, header, i, classes = [], [], 0, []
+    stack, header, i, classes, in_constexpr = [], [], 0, [], 0
     while i < len(tokens):
         token = tokens[i]
         token.classes = tuple(classes)
-        function = bool(stack) and stack[-1] in ("function", "block")
+        function = bool(stack) and stack[-1] in ("function", "block", "constexpr")
+        token.constant = in_constexpr > 0
         if token.text == "{":
             texts = [t.text for t in header]
             if function:
@@ -211,19 +211,19 @@ def mark(tokens, all_classes=None):
                 if all_classes is not None:
                     all_classes.append(classes[-1])
             elif "(" in texts and "concept" not in texts:
-                if "constexpr" in texts and not set(CONSTEXPR_AT_RUN_TIME) & set(texts):
+                if {"constexpr", "consteval"} & set(texts):
                     stack.append("constexpr")
+                    in_constexpr = len(stack)
                 else:
                     stack.append("function")
                     mark_initialisers(header)
-                    for t in header:
-                        if t.text == "constexpr":
-                            t.insert = ""
             else:
                 i = matching(tokens, i, "{", "}") + 1  # the initialiser of a member
                 continue
             header = []
         elif token.text == "}":
+            if len(stack) == in_constexpr:
+                in_constexpr = 0
             if stack and stack.pop() == "scope":
                 classes.pop()
             header = []
@@ -311,8 +311,7 @@ def skip_statements(tokens):
             words = {t.text for t in tokens[first:i]}
             if words & {"throw", "using", "static_assert", "static", "typedef", "CROSSBEAM_EXPECTS"}:
                 skip(tokens, first, i)
-            at_run_time = "constexpr" in words and not words & {"if", "int", "bool", "auto", "std"}
-            if "constexpr" in words and "if" not in words and not at_run_time:
+            if "constexpr" in words and words & {"int", "bool", "auto", "std"} and "if" not in words:
                 skip(tokens, first, i)  # it may be the size of an array
             first = i + 1
 
@@ -352,8 +351,8 @@ class Instrumenter:
         self.members = self.members or own
 
     def add(self, token, kind, variants):
-        """variants: (before, after) each. Returns the number of the site, or None on a line that
-        does not compile with mutants."""
+        """variants: (before, after) each. Returns the number of the site, negative where the compiler
+        may evaluate it, or None on a line that does not compile with mutants."""
         if token.line in self.dropped:
             return None
         self.site += 1
@@ -362,7 +361,7 @@ class Instrumenter:
                                  "line": token.line, "kind": kind, "before": before,
                                  "after": after,
                                  "text": self.lines[token.line - 1].strip()})
-        return self.site
+        return -self.site if token.constant else self.site
 
     def right_operand(self, i):
         """Words of the right operand of the binary operator at i, for the reader."""
@@ -738,6 +737,7 @@ class Instrumenter:
             if not token.live:
                 continue
             if token.kind == "sign":
+                self.capture(i)
                 self.binary(i)
                 self.connective(i)
                 self.prefix(i)
@@ -754,6 +754,12 @@ class Instrumenter:
         self.statements()
         self.chains()
         return self.text()
+
+    def capture(self, i):
+        """Proxies take references: a lambda needs even the constants that it could use without."""
+        t = self.tokens
+        if t[i].text == "[" and t[i + 1].text == "]" and t[i + 2].text in ("(", "{", "<"):
+            t[i].insert = "[="
 
     def literal(self, i):
         token = self.tokens[i]

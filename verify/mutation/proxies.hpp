@@ -26,13 +26,18 @@ int reached(int site);
 void not_applicable();
 void applied(bool differs);
 
-CROSSBEAM_PROXY int variant(int site) {
+/// A negative number stands in a constexpr function: as written where the compiler evaluates it.
+CROSSBEAM_PROXY constexpr int variant(int site) {
+  if (site < 0) {
+    if (std::is_constant_evaluated()) return 0;
+    site = -site;
+  }
   return __builtin_expect(flag[site] != 0, 0) ? reached(site) : 0;
 }
 
 /// Values, not expressions that refer to operands.
 template <class X>
-CROSSBEAM_PROXY auto plain(X&& x) {
+CROSSBEAM_PROXY constexpr auto plain(X&& x) {
   if constexpr (requires { x.eval(); })
     return x.eval();
   else
@@ -42,7 +47,7 @@ template <class X>
 using plain_t = decltype(plain(std::declval<X>()));
 
 template <class V>
-bool differs(const V& a, const V& b) {
+constexpr bool differs(const V& a, const V& b) {
   if constexpr (requires {
                   { a == b } -> std::same_as<bool>;
                 })
@@ -60,7 +65,7 @@ inline constexpr bool same_kind =
                                  !requires(V v) { v.x; } && std::is_convertible_v<X, V>));
 
 template <class V, class X>
-V mutant(const V& original, const X& x) {
+constexpr V mutant(const V& original, const X& x) {
   if constexpr (same_kind<V, plain_t<const X&>>) {
     const V changed(plain(x));
     applied(differs(original, changed));
@@ -72,7 +77,7 @@ V mutant(const V& original, const X& x) {
 }
 /// One operand is left out: the right one where the left one has the type of the result.
 template <class V, class L, class R>
-V dropped(const V& original, const L& l, const R& r) {
+constexpr V dropped(const V& original, const L& l, const R& r) {
   if constexpr (same_kind<V, plain_t<const L&>>)
     return mutant(original, l);
   else
@@ -88,31 +93,32 @@ struct Half {
 
 /// A proxy for the binary operator `op`: variant 1 is `first`, variant 2 is `second`, expressions in
 /// l, r and the original value v.
-#define CROSSBEAM_MUTATION(Name, op, first, second)                                                \
-  struct Name {                                                                                    \
-    int site;                                                                                      \
-    template <class V, class L, class R>                                                           \
-    [[gnu::noinline, gnu::cold]] static V changed(int which, V v, L l, R r) {                      \
-      if (which == 1) {                                                                            \
-        if constexpr (requires { first; }) return first;                                           \
-      } else {                                                                                     \
-        if constexpr (requires { second; }) return second;                                         \
-      }                                                                                            \
-      not_applicable();                                                                            \
-      return v;                                                                                    \
-    }                                                                                              \
-    template <class L>                                                                             \
-    CROSSBEAM_PROXY friend Half<Name, std::remove_reference_t<L>> operator op(L&& l, Name proxy) { \
-      return {l, proxy.site};                                                                      \
-    }                                                                                              \
-  };                                                                                               \
-  template <class L, class R>                                                                      \
-  CROSSBEAM_PROXY auto operator op(Half<Name, L>&& half, const R& r) {                             \
-    auto v = plain(half.l op r);                                                                   \
-    if (const int which = variant(half.site))                                                      \
-      return Name::template changed<decltype(v), std::decay_t<L&>, std::decay_t<const R&>>(        \
-          which, v, half.l, r);                                                                    \
-    return v;                                                                                      \
+#define CROSSBEAM_MUTATION(Name, op, first, second)                                         \
+  struct Name {                                                                             \
+    int site;                                                                               \
+    template <class V, class L, class R>                                                    \
+    [[gnu::noinline, gnu::cold]] static constexpr V changed(int which, V v, L l, R r) {     \
+      if (which == 1) {                                                                     \
+        if constexpr (requires { first; }) return first;                                    \
+      } else {                                                                              \
+        if constexpr (requires { second; }) return second;                                  \
+      }                                                                                     \
+      not_applicable();                                                                     \
+      return v;                                                                             \
+    }                                                                                       \
+    template <class L>                                                                      \
+    CROSSBEAM_PROXY friend constexpr Half<Name, std::remove_reference_t<L>> operator op(    \
+        L&& l, Name proxy) {                                                                \
+      return {l, proxy.site};                                                               \
+    }                                                                                       \
+  };                                                                                        \
+  template <class L, class R>                                                               \
+  CROSSBEAM_PROXY constexpr auto operator op(Half<Name, L>&& half, const R& r) {            \
+    auto v = plain(half.l op r);                                                            \
+    if (const int which = variant(half.site))                                               \
+      return Name::template changed<decltype(v), std::decay_t<L&>, std::decay_t<const R&>>( \
+          which, v, half.l, r);                                                             \
+    return v;                                                                               \
   }
 
 CROSSBEAM_MUTATION(Add, +, mutant(v, l - r), dropped(v, l, r))
@@ -138,14 +144,14 @@ CROSSBEAM_MUTATION(LoopGreaterEqual, >=, mutant(v, l > r), mutant(v, false))
 
 // Prefix operators, written with ->*, which binds tighter than every binary operator.
 template <class V, class X>
-[[gnu::noinline, gnu::cold]] V changed_to(V v, X x) {
+[[gnu::noinline, gnu::cold]] constexpr V changed_to(V v, X x) {
   return mutant(v, x);
 }
 struct Minus {
   int site;
 };
 template <class X>
-CROSSBEAM_PROXY auto operator->*(Minus proxy, const X& x) {
+CROSSBEAM_PROXY constexpr auto operator->*(Minus proxy, const X& x) {
   auto v = plain(-x);
   if (variant(proxy.site)) return changed_to<decltype(v), X>(v, x);
   return v;
@@ -154,7 +160,7 @@ struct Not {
   int site;
 };
 template <class X>
-CROSSBEAM_PROXY auto operator->*(Not proxy, const X& x) {
+CROSSBEAM_PROXY constexpr auto operator->*(Not proxy, const X& x) {
   auto v = plain(!x);
   if (variant(proxy.site)) {
     if constexpr (std::is_same_v<decltype(v), bool>)
@@ -169,7 +175,7 @@ struct Transposed {
   int site;
 };
 template <class X>
-CROSSBEAM_PROXY auto operator->*(const X& x, Transposed proxy) {
+CROSSBEAM_PROXY constexpr auto operator->*(const X& x, Transposed proxy) {
   auto v = plain(x);
   if (variant(proxy.site)) {
     if constexpr (int(X::RowsAtCompileTime) == int(X::ColsAtCompileTime))
@@ -183,7 +189,7 @@ struct Increment {
   int site;
 };
 template <class Y>
-CROSSBEAM_PROXY auto operator*=(Increment proxy, const Y& y) {
+CROSSBEAM_PROXY constexpr auto operator*=(Increment proxy, const Y& y) {
   auto v = plain(y);
   if (const int which = variant(proxy.site)) {
     if constexpr (requires { v - v; }) {
@@ -208,7 +214,7 @@ using condition_t = std::conditional_t<is_mask<C>, C, bool>;
 struct True {
   int site, which;
   template <class C>
-  CROSSBEAM_PROXY friend condition_t<C> operator||(True proxy, const C& c) {
+  CROSSBEAM_PROXY friend constexpr condition_t<C> operator||(True proxy, const C& c) {
     condition_t<C> v = static_cast<condition_t<C>>(c);
     if (variant(proxy.site) == proxy.which) return changed_to<condition_t<C>>(v, v || !v);
     return v;
@@ -217,7 +223,7 @@ struct True {
 struct False {
   int site, which;
   template <class C>
-  CROSSBEAM_PROXY friend condition_t<C> operator&&(False proxy, const C& c) {
+  CROSSBEAM_PROXY friend constexpr condition_t<C> operator&&(False proxy, const C& c) {
     condition_t<C> v = static_cast<condition_t<C>>(c);
     if (variant(proxy.site) == proxy.which) return changed_to<condition_t<C>>(v, v && !v);
     return v;
@@ -228,7 +234,7 @@ struct False {
 struct Choice {
   int site;
   template <class C>
-  CROSSBEAM_PROXY friend auto operator||(const C& c, Choice proxy) {
+  CROSSBEAM_PROXY friend constexpr auto operator||(const C& c, Choice proxy) {
     constexpr bool lanes = requires {
       { c == 0 } -> std::same_as<C>;
     } && !std::is_arithmetic_v<C>;
@@ -246,14 +252,14 @@ struct Choice {
 };
 
 /// `if (kept(7)) statement;`
-CROSSBEAM_PROXY bool kept(int site) {
+CROSSBEAM_PROXY constexpr bool kept(int site) {
   if (!variant(site)) return true;
   applied(true);
   return false;
 }
 
 template <class X>
-CROSSBEAM_PROXY X constant(int site, X as_written, X changed) {
+CROSSBEAM_PROXY constexpr X constant(int site, X as_written, X changed) {
   if (variant(site)) {
     applied(true);
     return changed;
@@ -263,7 +269,7 @@ CROSSBEAM_PROXY X constant(int site, X as_written, X changed) {
 
 /// Another variable of the same type.
 template <class X, class Y>
-CROSSBEAM_PROXY decltype(auto) twin(int site, X& x, [[maybe_unused]] Y& y) {
+CROSSBEAM_PROXY constexpr decltype(auto) twin(int site, X& x, [[maybe_unused]] Y& y) {
   if constexpr (std::is_same_v<X, Y>) {
     if (variant(site)) {
       applied(differs(x, y));
