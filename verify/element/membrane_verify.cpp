@@ -441,7 +441,8 @@ TEST_CASE("V-ELEM-10 the bound of the step knows the hourglass stiffness") {
       EnergyLedger e;
       sweep.add_energy(state_at(m, x), e);
       const double mass = areal_mass * m.area(0) / 4;
-      const double hourglass = 2 * e.value("hourglass") / (mass * 1e-4 * side * side * u.squaredNorm());
+      const double hourglass =
+          2 * e.value("hourglass") / (mass * 1e-4 * side * side * u.squaredNorm());
       // In a square the hourglass is a mode of its own.
       if (!distorted) alone.see(std::abs(bound(modulus) / hourglass - 1), side);
       // The sum of two stiffnesses has a frequency between the higher one and the sum of both.

@@ -117,7 +117,8 @@ class CentralDifference {
   /// As many steps as it takes until `time` is reached.
   void advance_until(double time) {
     require_finite("time", time, "ms");
-    while (time_ < time) advance(maximum<long long>(1, static_cast<long long>((time - time_) / dt_)));
+    while (time_ < time)
+      advance(maximum<long long>(1, static_cast<long long>((time - time_) / dt_)));
   }
 
   /// Steps that `advance` has in flight at a time: one with several threads, with few levels, and where

@@ -21,10 +21,10 @@ struct NodeConstraint {
 template <class R>
 struct NodalState {
   int node_count = 0;
-  double areal_mass = 0;  ///< that the masses were made of [kg/mm^2]
+  double areal_mass = 0;      ///< that the masses were made of [kg/mm^2]
   double widest_element = 0;  ///< longest distance between two nodes of one element [mm]
-  NodeVectors<double> x;  ///< positions x_n [mm]; kernels get their differences, tag [D-6]
-  NodeVectors<R> v;       ///< velocities v_{n-1/2} [mm/ms]
+  NodeVectors<double> x;      ///< positions x_n [mm]; kernels get their differences, tag [D-6]
+  NodeVectors<R> v;           ///< velocities v_{n-1/2} [mm/ms]
   /// Velocities predicted for t_n from v_{n-1/2} and the last acceleration, of second order,
   /// 2 v_{n-1/2} - v_{n-1}, tag [D-2] [mm/ms]
   NodeVectors<R> v_predicted;
