@@ -35,6 +35,7 @@ NEAR = {
     "sweep": (["sweep", "element"], ["dynamics"]),
     "contact": (["contact"], ["dynamics"]),
     "dynamics": (["dynamics"], ["stress"]),
+    "simulation": (["model"], ["dynamics"]),
     "adapters": (["law"], ["element"]),
     "verification": (["battery"], ["law"]),
 }

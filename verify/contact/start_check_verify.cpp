@@ -91,6 +91,12 @@ TEST_CASE("V-CONT-35 a start deep in a tool is refused with the speed that it wo
   CHECK(by_one.depth == found.depth);
   CHECK(by_one.deepest == found.deepest);
 
+  // A depth of mere rounding under a smooth onset is a start like any other.
+  ContactParameters smooth;
+  smooth.smoothing = 0.05;
+  for (double depth = 1e-14; depth < 1e-3; depth *= 1.37)
+    CHECK(text(contact_of(ground(depth), smooth)) == "");
+
   // The speed that is foretold is the one that comes, of a sheet that nothing holds together.
   const auto thrown = [&](double smoothing, double z) {
     ContactParameters p;

@@ -36,7 +36,7 @@ TEST_CASE(
   std::vector<double> q(static_cast<std::size_t>(problem.unknowns()));
   problem.read(q.data());
   REQUIRE(problem.internal_force(q.data()) > 1e-3);  // a part in tension, not a limp sheet [kN]
-  const auto r = reference::find_equilibrium(problem, {1e-10, 400, 0});
+  const auto r = reference::find_equilibrium(problem, {1e-10, 400});
   std::string history;
   for (double f : r.history) history += " " + std::to_string(std::log10(f));
   INFO("log10 of the unbalanced force:", history);

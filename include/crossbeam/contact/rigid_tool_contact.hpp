@@ -61,7 +61,8 @@ class RigidToolContact final : public ToolContact<real_t<T>> {
         if (d <= out.depth) continue;
         out.deepest = n + lane;
         out.depth = d;
-        out.speed = std::sqrt(2 * static_cast<double>(energy[lane]) /
+        // Of a depth that is mere rounding, a smooth onset's energy may be below zero by as much.
+        out.speed = std::sqrt(2 * maximum(static_cast<double>(energy[lane]), 0.0) /
                               static_cast<double>(state.mass[n + lane]));
       }
     }
