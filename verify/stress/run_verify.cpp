@@ -73,7 +73,9 @@ End advance(Run& run, int steps,
       size = std::max({size, row.value("kinetic"),
                        row.stored() - row.value("kinetic") - row.value("contact"),
                        std::abs(row.value("tools"))});
-      end.drift = std::max(end.drift, std::abs(row.residual() - first) / std::max(size, 1e-300));
+      // Slack yarns without bending store nothing: what they leave is the rounding of strains,
+      // 1e-32 of a stiffness times an area, 1e-29 kN mm. Below 1e-24 nothing can be compared.
+      end.drift = std::max(end.drift, std::abs(row.residual() - first) / std::max(size, 1e-24));
     }
   } catch (const RunError& error) {
     end.stopped = error.what();
